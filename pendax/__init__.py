@@ -1,0 +1,19 @@
+"""The pendulum beyond small angles, and the Josephson junction that obeys it, in JAX."""
+
+from . import special as special
+from ._critical import CriticalLaw as CriticalLaw
+from ._critical import CriticalSide as CriticalSide
+from ._critical import critical_law as critical_law
+from ._critical import fit_critical_law as fit_critical_law
+from ._exact import amplitude as amplitude
+from ._exact import frequency as frequency
+from ._exact import period as period
+from ._pendulum import Pendulum as Pendulum
+from ._pendulum import energy as energy
+from ._results import Result as Result
+from ._simulate import Trajectory as Trajectory
+from ._simulate import simulate as simulate
+from .fit import Cycles as Cycles
+from .fit import Fit as Fit
+from .fit import cycles as cycles
+from .fit import fit_frequency as fit_frequency

@@ -1,0 +1,81 @@
+"""From whatever the caller passes to arrays of one shape and dtype, and exact products."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, ArrayLike, Float
+
+# What JAX takes for an array (its `ArrayLike`, which has no isinstance for tracers).
+NUMBERS = (jax.Array, np.ndarray, np.generic, bool, int, float, complex)
+
+
+def common(**arguments: ArrayLike) -> list[Float[Array, "..."]]:
+    """The arguments as real floating arrays of one shape and dtype.
+
+    The dtype is `jnp.result_type` of them all, Python scalars and integers weak;
+    float16 and bfloat16 stay what they are (see `widened`).
+    """
+    for name, x in arguments.items():
+        if not isinstance(x, NUMBERS):
+            raise ValueError(
+                f"Argument `{name}` must be a number or an array, but got {type(x).__name__}."
+            )
+        kind = jnp.result_type(x)
+        if not (jnp.issubdtype(kind, jnp.floating) or jnp.issubdtype(kind, jnp.integer)):
+            raise ValueError(f"Argument `{name}` must be real numbers, but got {kind}.")
+    dtype = floating(*arguments.values())
+    arrays = [jnp.asarray(x, dtype) for x in arguments.values()]
+    try:
+        shape = jnp.broadcast_shapes(*(x.shape for x in arrays))
+    except ValueError:
+        shapes = ", ".join(f"`{name}` {jnp.shape(x)}" for name, x in arguments.items())
+        raise ValueError(f"Arguments must broadcast together, but got shapes {shapes}.") from None
+    return [jnp.broadcast_to(x, shape) for x in arrays]
+
+
+def floating(*arguments: ArrayLike) -> np.dtype:
+    """`jnp.result_type` of the arguments, a floating type in any case."""
+    dtype = jnp.result_type(*arguments)
+    return dtype if jnp.issubdtype(dtype, jnp.floating) else jnp.result_type(float)
+
+
+def concrete(x: object) -> np.ndarray | None:
+    """The values of `x` where Python can see them (no tracer, a number), else None."""
+    if isinstance(x, jax.core.Tracer) or not isinstance(x, NUMBERS):
+        return None
+    return np.asarray(x)
+
+
+def require(name: str, x: object, holds: str, test) -> None:
+    """ValueError "Argument `name` must be `holds`, but got …" unless test(x) throughout.
+
+    NaN passes: it stays in its own lane.  Tracers and non-numbers pass unseen.
+    """
+    values = concrete(x)
+    if values is None or not np.issubdtype(values.dtype, np.number):
+        return
+    wrong = ~(test(values) | np.isnan(values))
+    if wrong.any():
+        raise ValueError(f"Argument `{name}` must be {holds}, but got {values[wrong].flat[0]}.")
+
+
+def two_product(
+    a: Float[Array, "..."], b: Float[Array, "..."]
+) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+    """a b as head + tail, exact where neither over- nor underflows (Dekker 1971).
+
+    The halves come from `lax.reduce_precision`, not from Veltkamp's c - (c - a): all
+    partial products are then exact, and it makes no difference which of them XLA
+    fuses into multiply-adds.  Not to be differentiated.
+    """
+    digits = jnp.finfo(a.dtype).nmant // 2 - (a.dtype == jnp.float64)
+
+    def halves(x):
+        high = lax.reduce_precision(x, jnp.finfo(x.dtype).nexp, digits)
+        return high, x - high
+
+    head = a * b
+    (a1, a2), (b1, b2) = halves(a), halves(b)
+    tail = (((a1 * b1 - head) + a1 * b2) + a2 * b1) + a2 * b2
+    return head, tail

@@ -1,0 +1,201 @@
+"""ω(v0) at the separatrix: the logarithmic law, its corrections, and its fit.
+
+With x = t/√ε, t = |v0 − 2√ε|, and L = ln(4/√x),
+
+    π√ε/(2 ω) = A(x) L + B(x)    below,        π√ε/ω = A(−x) L + B(−x)    above,
+
+A(x) = 1 + x/4 + …, B(x) = −x/8 − …, two power series with rational coefficients.  The
+sources' law keeps A = 1, B = 0.
+"""
+
+from fractions import Fraction
+from functools import lru_cache
+from typing import Literal
+
+import equinox as eqx
+
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, ArrayLike, Float
+
+from ._arrays import common, require, two_product
+from ._results import Result
+
+FloatArray = Float[Array, "..."]
+Side = Literal["lower", "upper"]
+
+
+def critical_law(
+    t: ArrayLike, side: Side, epsilon: ArrayLike = 1.0, order: int = 0
+) -> FloatArray:
+    """ω a distance t from the separatrix, by the law of chosen order, rad/s.
+
+    **Arguments:**
+
+    - `t`: |v0 − 2√ε| ≥ 0, rad/s, any shape.
+    - `side`: "lower" (librating, v0 < 2√ε) or "upper" (rotating).
+    - `epsilon`: ε > 0, 1/s²; broadcasts with `t`.
+    - `order`: the power of t/√ε up to which the series are kept.  0 is the leading
+      law ω = A / ln(B/√t), A = π√ε/2 below and π√ε above, B = 4 ε^¼.
+
+    **Returns:** ω; 0 at t = 0, NaN for t < 0 or, under a transformation, ε ≤ 0.  The
+    relative error is of the order of (t/(4√ε))^(order + 1).
+
+    **Raises:** `ValueError` for another `side`, a negative `order`, a visible ε ≤ 0.
+
+    Suzuki & Suzuki §2.7, §3.3; the series from DLMF 19.12.1.
+    """
+    if side not in ("lower", "upper"):
+        raise ValueError(f'Argument `side` must be "lower" or "upper", but got {side!r}.')
+    require("epsilon", epsilon, "positive", lambda x: x > 0)
+    t, epsilon = common(t=t, epsilon=epsilon)
+    root = jnp.sqrt(jnp.where(epsilon > 0, epsilon, jnp.nan))
+    a, b = _series(t / root, 1 if side == "lower" else -1, order)
+    prefactor = (0.5 if side == "lower" else 1) * jnp.pi * root
+    return _law(t, prefactor, 4 * jnp.sqrt(root), a, b)
+
+
+class CriticalSide(eqx.Module):
+    """ω = A / ln(B/√t) fitted on one side: `amplitude` A, rad/s; `scale` B, (rad/s)^½.
+
+    `residual` is the root mean square of ω_law/ω − 1; `count` the points used.
+    """
+
+    amplitude: FloatArray
+    scale: FloatArray
+    residual: FloatArray
+    count: Array
+
+
+class CriticalLaw(eqx.Module):
+    """Both sides of the separatrix; `ratio` = A_upper/A_lower, 2 in theory."""
+
+    lower: CriticalSide
+    upper: CriticalSide
+    ratio: FloatArray
+    result: Result
+
+
+def fit_critical_law(
+    v0: ArrayLike, omega: ArrayLike, epsilon: ArrayLike = 1.0, order: int = 0
+) -> CriticalLaw:
+    """A and B of the critical law, from frequencies on both sides of the separatrix.
+
+    **Arguments:**
+
+    - `v0`, `omega`: one axis of equal length; points on both sides, in any order, the
+      window being what is passed.  Points at t = 0 carry no information and no weight.
+    - `epsilon`: ε > 0 of all of them, a scalar.
+    - `order`: as for [`critical_law`][]: 0 fits ω = A / ln(B/√t); higher orders fit the
+      same A and B with the series' corrections held, for windows far from t = 0.
+
+    **Returns:** a [`CriticalLaw`][].  Levenberg–Marquardt on ln A and ln B, both sides
+    at once, relative residuals, from the line through the nearest and farthest point.
+    With fewer than two distances on a side, that side is NaN and `result` says so.
+
+    t is recomputed from the rounded v0 as |v0² − 4ε| / (|v0| + 2√ε), v0² error-free.
+    """
+    require("epsilon", epsilon, "a positive scalar", lambda x: (x > 0) & (x.ndim == 0))
+    v0, omega, epsilon = common(v0=v0, omega=omega, epsilon=epsilon)
+    if v0.ndim != 1:
+        raise ValueError(f"Argument `v0` must have one axis, but got shape {v0.shape}.")
+    # optimistix keeps some state in the default dtype: float32 data are fitted in it.
+    wide = jnp.result_type(float)
+    law = _fit(*(x.astype(wide) for x in (v0, omega, epsilon[0])), order)
+    return jax.tree.map(lambda x: x.astype(v0.dtype) if x.dtype == wide else x, law)
+
+
+def distance(v0: FloatArray, epsilon: FloatArray) -> tuple[FloatArray, Array]:
+    """(t, below): t = ||v0| − 2√ε| to the last digit, for the floats as given."""
+    square, tail = two_product(v0, v0)
+    gap = (4 * epsilon - square) - tail
+    return jnp.abs(gap) / (jnp.abs(v0) + 2 * jnp.sqrt(epsilon)), gap > 0
+
+
+@eqx.filter_jit
+def _fit(v0: FloatArray, omega: FloatArray, epsilon: FloatArray, order: int) -> CriticalLaw:
+    t, below = distance(v0, epsilon)
+
+    def one(below, sign):
+        used = below & (t > 0)
+        a, b = _series(t / jnp.sqrt(epsilon), sign, order)
+        return _fit_side(jnp.where(used, t, 1), jnp.where(used, omega, 1), a, b, used)
+
+    (lower, ok_lower), (upper, ok_upper) = one(below, 1), one(~below, -1)
+    ok = ok_lower & ok_upper
+    result = Result.where(ok, Result.successful, Result.not_converged)
+    return CriticalLaw(lower, upper, upper.amplitude / lower.amplitude, result)
+
+
+def _fit_side(t, omega, a, b, used) -> tuple[CriticalSide, Array]:
+    import optimistix as optx
+
+    def residuals(log, _):
+        law = _law(t, jnp.exp(log[0]), jnp.exp(log[1]), a, b)
+        return jnp.where(used, law / omega - 1, 0)
+
+    # 1/ω is nearly linear in ln t: A and B of the line through the two end points.
+    near = jnp.argmin(jnp.where(used, t, jnp.inf))
+    far = jnp.argmax(jnp.where(used, t, -jnp.inf))
+    run = 0.5 * (jnp.log(t[far]) - jnp.log(t[near]))
+    amplitude = run / (1 / omega[near] - 1 / omega[far])
+    start = jnp.stack([jnp.log(amplitude), amplitude / omega[near] + 0.5 * jnp.log(t[near])])
+
+    eps = float(jnp.finfo(t.dtype).eps)
+    solver = optx.LevenbergMarquardt(rtol=eps**0.75, atol=eps**0.75)
+    solution = optx.least_squares(residuals, solver, start, max_steps=64, throw=False)
+    count = jnp.sum(used)
+    rms = jnp.sqrt(jnp.sum(residuals(solution.value, None) ** 2) / count.astype(t.dtype))
+    ok = (solution.result == optx.RESULTS.successful) & (run > 0)
+    amplitude, scale = jnp.where(ok, jnp.exp(solution.value), jnp.nan)
+    return CriticalSide(amplitude, scale, rms, count), ok
+
+
+def _law(t, amplitude, scale, a, b):
+    """A / (a ln(B/√t) + b); NaN for t < 0."""
+    at_zero = t == 0
+    log = jnp.log(scale) - 0.5 * jnp.log(jnp.where(at_zero, 1, t))
+    return jnp.where(at_zero, 0, amplitude / (a * log + b))
+
+
+def _series(x: FloatArray, sign: int, order: int) -> tuple[FloatArray, FloatArray]:
+    """A(±x) and B(±x), to the power `order`."""
+    a, b = (
+        [float(c) * sign**n for n, c in enumerate(series)] for series in coefficients(order)
+    )
+    one = jnp.ones_like(x)
+    return tuple(sum((c * x**n for n, c in enumerate(cs)), 0 * one) for cs in (a, b))
+
+
+@lru_cache
+def coefficients(order: int) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]]:
+    """The coefficients of A(x) and B(x), exact, powers 0 … order.
+
+    K = Σ a_n m1^n (ln(4/√m1) − r_n) with a_n = ((1/2)_n/n!)², r_{n+1} = r_n +
+    1/((2n+1)(n+1)) (DLMF 19.12.1), at m1 = x − x²/4 = 1 − (1 − x/2)².
+    """
+    if order < 0:
+        raise ValueError(f"Argument `order` must be zero or positive, but got {order}.")
+    size = order + 1
+
+    def times(p, q):
+        return [sum(p[i] * q[n - i] for i in range(n + 1)) for n in range(size)]
+
+    def padded(*low):
+        return [Fraction(c) for c in low[:size]] + [Fraction(0)] * (size - len(low))
+
+    m1, power = padded(0, 1, Fraction(-1, 4)), padded(1)
+    weight, r = Fraction(1), Fraction(0)
+    a, b = padded(), padded()
+    for n in range(size):
+        a = [x + weight * y for x, y in zip(a, power, strict=True)]
+        b = [x - weight * r * y for x, y in zip(b, power, strict=True)]
+        power = times(power, m1)
+        weight *= Fraction(2 * n + 1, 2 * n + 2) ** 2
+        r += Fraction(1, (2 * n + 1) * (n + 1))
+    # ln(4/√m1) = L − ½ ln(1 − x/4) = L + Σ (x/4)^n / (2n)
+    log = [Fraction(0)] + [Fraction(1, 2 * n * 4**n) for n in range(1, size)]
+    b = [x + y for x, y in zip(b, times(log, a), strict=True)]
+    return tuple(a), tuple(b)
+
+

@@ -1,0 +1,21 @@
+"""How a computation ended, lane by lane."""
+
+import equinox as eqx
+import jax
+from jaxtyping import Array, Bool
+
+
+class Result(eqx.Enumeration):
+    """`==` compares lane by lane; `Result[lane]` is the message."""
+
+    successful = ""
+    not_a_number = "An argument is NaN or infinite, or a parameter is outside its domain."
+    not_converged = "The iteration did not converge."
+
+
+def where(condition: Bool[Array, "*lanes"], then: Result, otherwise: Result) -> Result:
+    """`Result.where` for a condition of any shape."""
+    select = Result.where
+    for _ in range(condition.ndim):
+        select = jax.vmap(select, in_axes=(0, None, None))
+    return select(condition, then, otherwise)

@@ -1,0 +1,6 @@
+"""Physical parameters from measurements."""
+
+from ._cycles import Cycles as Cycles
+from ._cycles import cycles as cycles
+from ._fit import Fit as Fit
+from ._frequency import fit_frequency as fit_frequency
