@@ -9,7 +9,7 @@ sources' law keeps A = 1, B = 0.
 """
 
 from fractions import Fraction
-from functools import lru_cache
+from functools import lru_cache, partial
 from typing import Literal
 
 import equinox as eqx
@@ -20,6 +20,7 @@ from jaxtyping import Array, ArrayLike, Float
 
 from ._arrays import common, require, two_product
 from ._results import Result
+from .special._agm import agm
 
 FloatArray = Float[Array, "..."]
 Side = Literal["lower", "upper"]
@@ -48,11 +49,7 @@ def critical_law(
     if side not in ("lower", "upper"):
         raise ValueError(f'Argument `side` must be "lower" or "upper", but got {side!r}.')
     require("epsilon", epsilon, "positive", lambda x: x > 0)
-    t, epsilon = common(t=t, epsilon=epsilon)
-    root = jnp.sqrt(jnp.where(epsilon > 0, epsilon, jnp.nan))
-    a, b = _series(t / root, 1 if side == "lower" else -1, order)
-    prefactor = (0.5 if side == "lower" else 1) * jnp.pi * root
-    return _law(t, prefactor, 4 * jnp.sqrt(root), a, b)
+    return _critical_law(*common(t=t, epsilon=epsilon), side, order)
 
 
 class CriticalSide(eqx.Module):
@@ -110,6 +107,23 @@ def distance(v0: FloatArray, epsilon: FloatArray) -> tuple[FloatArray, Array]:
     square, tail = two_product(v0, v0)
     gap = (4 * epsilon - square) - tail
     return jnp.abs(gap) / (jnp.abs(v0) + 2 * jnp.sqrt(epsilon)), gap > 0
+
+
+@partial(jax.jit, static_argnums=(2, 3))
+def _critical_law(t: FloatArray, epsilon: FloatArray, side: Side, order: int) -> FloatArray:
+    root = jnp.sqrt(jnp.where(epsilon > 0, epsilon, jnp.nan))
+    a, b = _series(t / root, 1 if side == "lower" else -1, order)
+    prefactor = (0.5 if side == "lower" else 1) * jnp.pi * root
+    return _law(t, prefactor, 4 * jnp.sqrt(root), a, b)
+
+
+@partial(jax.jit, static_argnums=2)
+def frequency_at(t: FloatArray, epsilon: FloatArray, side: Side) -> FloatArray:
+    """The exact ω a distance t > 0 from the separatrix, where v0 itself may be no float."""
+    separatrix = 2 * jnp.sqrt(epsilon)
+    if side == "lower":
+        return 0.5 * agm(separatrix, jnp.sqrt(t * (2 * separatrix - t)))
+    return agm(separatrix + t, jnp.sqrt(t * (2 * separatrix + t)))
 
 
 @eqx.filter_jit

@@ -1,6 +1,7 @@
 """The main computation: ω over initial velocities on both sides of the separatrix."""
 
 from collections.abc import Callable
+from pathlib import Path
 from typing import NamedTuple
 
 import jax
@@ -17,7 +18,7 @@ BLOCK = 65536
 
 
 class Sweep(NamedTuple):
-    """Columns of equal length, v0 ascending: `t` = |v0 − 2√ε|, `below` where v0 < 2√ε.
+    """Columns of equal length: `t` = |v0 − 2√ε|, `below` where v0 < 2√ε.
 
     v0, t and omega in rad/s; on the separatrix itself t = omega = 0.
     """
@@ -66,3 +67,16 @@ def sweep(
         progress(block.size)
     t, below, omega = (np.concatenate(column) for column in zip(*parts, strict=True))
     return Sweep(epsilon, v0, t, omega, below)
+
+
+def write(swept: Sweep, path: Path) -> None:
+    """The sweep as a table, all digits: CSV or NumPy's npz, by the ending of `path`."""
+    names = ("v0_rad_per_s", "t_rad_per_s", "omega_rad_per_s")
+    columns = (swept.v0, swept.t, swept.omega)
+    if path.suffix == ".npz":
+        np.savez(path, epsilon=swept.epsilon, **dict(zip(names, columns, strict=True)))
+        return
+    with path.open("w", encoding="utf-8") as file:
+        file.write(",".join(names) + "\n")
+        rows = zip(*(column.tolist() for column in columns), strict=True)
+        file.writelines(f"{v0!r},{t!r},{omega!r}\n" for v0, t, omega in rows)

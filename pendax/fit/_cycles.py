@@ -10,6 +10,7 @@ from numpy.polynomial import Polynomial
 NEAR_LEVEL = 0.4  # around a crossing, where t(θ) is a cubic to 1e-4 of the period
 NEAR_PEAK = 0.85  # around a turning point, where θ(t) is a quartic to 1e-4 of θ_max
 SMALLEST = 0.02  # of the largest swing: a swing below it is rest
+ENOUGH = 5  # samples for a fit; on coarse recordings the neighbourhood grows to hold them
 
 
 class Cycles(NamedTuple):
@@ -132,9 +133,9 @@ def _crossing(
     """The time of the passage between two swings: t as a cubic in θ, read at 0."""
     reach = NEAR_LEVEL * min(abs(_turning(y, before)), abs(_turning(y, after)))
     first, last = before.stop - 1, after.start
-    while first > before.start and abs(y[first - 1]) < reach:
+    while first > before.start and (abs(y[first - 1]) < reach or last - first < ENOUGH - 1):
         first -= 1
-    while last < after.stop - 1 and abs(y[last + 1]) < reach:
+    while last < after.stop - 1 and (abs(y[last + 1]) < reach or last - first < ENOUGH):
         last += 1
     near = slice(first, last + 1)
     if np.diff(ts[near]).max() > 2.5 * step:
@@ -144,15 +145,14 @@ def _crossing(
 
 def _peak(ts: np.ndarray, y: np.ndarray, swing: slice) -> _Estimate:
     """The turning point of a swing: the extremum of θ as a quartic in t."""
-    part = y[swing]
+    t, part = ts[swing], y[swing]
     highest = int(np.argmax(np.abs(part)))
     near = np.abs(part) > NEAR_PEAK * abs(part[highest])
-    t, x = ts[swing][near], part[near]
-    here = ts[swing][highest]
-    if x.size < 4:
-        return _Estimate(float(part[highest]), float(np.ptp(x)))
-    slope = Polynomial.fit(t, x, _degree(x.size, 4)).deriv()
-    roots = slope.roots()
+    near[max(highest - ENOUGH // 2, 0) : highest + ENOUGH // 2 + 1] = True
+    t, x, here = t[near], part[near], t[highest]
+    if x.size < 3:
+        return _Estimate(float(part[highest]), float(abs(part[highest])))
+    roots = Polynomial.fit(t, x, _degree(x.size, 4)).deriv().roots()
     real = roots[np.isreal(roots)].real
     inside = real[(real >= t[0]) & (real <= t[-1])]
     top = inside[np.argmin(np.abs(inside - here))] if inside.size else here
@@ -160,8 +160,8 @@ def _peak(ts: np.ndarray, y: np.ndarray, swing: slice) -> _Estimate:
 
 
 def _degree(samples: int, most: int) -> int:
-    """At least two samples to spare for the scatter, as far as there are any."""
-    return max(1, min(most, samples - 3))
+    """One sample to spare for the scatter."""
+    return min(most, samples - 2)
 
 
 def _polynomial(x: np.ndarray, y: np.ndarray, most: int, at: float) -> _Estimate:
@@ -171,8 +171,7 @@ def _polynomial(x: np.ndarray, y: np.ndarray, most: int, at: float) -> _Estimate
     basis = np.vander((x - at) / span, degree + 1, increasing=True)
     mean = y.mean()
     solution, _, rank, _ = np.linalg.lstsq(basis, y - mean, rcond=None)
-    spare = x.size - rank
     scatter = basis @ solution - (y - mean)
-    variance = scatter @ scatter / spare if spare else np.nan
+    variance = scatter @ scatter / max(x.size - rank, 1)
     covariance = np.linalg.pinv(basis.T @ basis)
     return _Estimate(float(mean + solution[0]), float(np.sqrt(variance * covariance[0, 0])))

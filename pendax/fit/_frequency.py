@@ -1,12 +1,14 @@
 """ε from the periods of swings of known amplitude."""
 
+import jax
 import jax.numpy as jnp
-from jaxtyping import ArrayLike
+from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common, require
 from .._exact import period as exact_period
 from .._pendulum import Pendulum
 from .._results import Result, where
+from ._cycles import Cycles
 from ._fit import Fit
 
 
@@ -62,3 +64,17 @@ def fit_frequency(
         history=loss[None],
         result=where(jnp.isfinite(epsilon), Result.successful, Result.not_a_number),
     )
+
+
+def period_sigma(cycles: Cycles) -> Float[Array, " cycles"]:
+    """Standard errors of the periods with those of the amplitudes carried over by dT/dθ_max.
+
+    In angles of rad; the weights with which measured cycles go into [`fit_frequency`][].
+    """
+    amplitude, measured = jnp.asarray(cycles.amplitude), jnp.asarray(cycles.period)
+
+    def ratio(amplitude):
+        return exact_period(Pendulum(), 0.0, amplitude)
+
+    slope = measured * jax.vmap(jax.grad(ratio))(amplitude) / ratio(amplitude)
+    return jnp.hypot(jnp.asarray(cycles.period_error), slope * cycles.amplitude_error)

@@ -1,0 +1,3 @@
+"""The sources' figures by their numbers."""
+
+from ._critical import CRITICAL as CRITICAL
