@@ -4,13 +4,13 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import lax
-from jaxtyping import Array, ArrayLike, Float
+from jaxtyping import Array, Float
 
 # What JAX takes for an array (its `ArrayLike`, which has no isinstance for tracers).
 NUMBERS = (jax.Array, np.ndarray, np.generic, bool, int, float, complex)
 
 
-def common(**arguments: ArrayLike) -> list[Float[Array, "..."]]:
+def common(**arguments: object) -> list[Float[Array, "..."]]:
     """The arguments as real floating arrays of one shape and dtype.
 
     The dtype is `jnp.result_type` of them all, Python scalars and integers weak;
@@ -34,7 +34,7 @@ def common(**arguments: ArrayLike) -> list[Float[Array, "..."]]:
     return [jnp.broadcast_to(x, shape) for x in arrays]
 
 
-def floating(*arguments: ArrayLike) -> np.dtype:
+def floating(*arguments: object) -> np.dtype:
     """`jnp.result_type` of the arguments, a floating type in any case."""
     dtype = jnp.result_type(*arguments)
     return dtype if jnp.issubdtype(dtype, jnp.floating) else jnp.result_type(float)

@@ -20,7 +20,7 @@ def ellipk(m: ArrayLike) -> Float[Array, "..."]:
     -1e300 to the float below 1.  DLMF 19.2.8, computed by 19.8.5 and the Landen ladder.
     """
     (m,) = common(m=m)
-    return widened(_k)(m, 1 - m)
+    return widened(lambda m: _k(m, 1 - m))(m)
 
 
 def ellipkm1(p: ArrayLike) -> Float[Array, "..."]:
@@ -33,7 +33,7 @@ def ellipkm1(p: ArrayLike) -> Float[Array, "..."]:
     Within 3 eps relative for p from the smallest normal number to 1e300.
     """
     (p,) = common(p=p)
-    return widened(_k)(1 - p, p)
+    return widened(lambda p: _k(1 - p, p))(p)
 
 
 def ellipe(m: ArrayLike) -> Float[Array, "..."]:
@@ -46,7 +46,7 @@ def ellipe(m: ArrayLike) -> Float[Array, "..."]:
     Within 3 eps relative for m from -1e300 to 1.  DLMF 19.2.8.
     """
     (m,) = common(m=m)
-    return widened(_e)(m, 1 - m)
+    return widened(lambda m: _e(m, 1 - m))(m)
 
 
 @jax.jit

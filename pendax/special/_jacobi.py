@@ -48,9 +48,9 @@ def ellipj(
         )
     if m1 is None:
         u, m = common(u=u, m=m)
-        return widened(_jacobi)(u, m, 1 - m)
+        return widened(lambda u, m: _jacobi(u, m, 1 - m))(u, m)
     u, m1 = common(u=u, m1=m1)
-    return widened(_jacobi)(u, 1 - m1, m1)
+    return widened(lambda u, m1: _jacobi(u, 1 - m1, m1))(u, m1)
 
 
 class _Parameter(NamedTuple):

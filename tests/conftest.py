@@ -1,0 +1,40 @@
+"""Strict JAX for every test, both precisions, and the folder of true values."""
+
+import os
+from pathlib import Path
+
+import jax
+import jaxtyping
+import pytest
+
+# Annotations are checked at run time, in this package alone; before its first import.
+jaxtyping.install_import_hook("pendax", "beartype.beartype")
+
+jax.config.update("jax_enable_x64", True)
+jax.config.update("jax_numpy_dtype_promotion", "strict")
+jax.config.update("jax_numpy_rank_promotion", "raise")
+
+ROOT = Path(__file__).parent.parent
+
+
+@pytest.fixture(params=["float64", "float32"])
+def dtype(request):
+    """The test runs in either precision, float32 as with JAX's own settings."""
+    with jax.enable_x64(request.param == "float64"):
+        yield jax.numpy.dtype(request.param)
+
+
+@pytest.fixture(scope="session")
+def shared() -> Path:
+    """True values and measurements: $PENDAX_SHARED, else `shared` beside the checkout."""
+    folder = Path(os.environ.get("PENDAX_SHARED", ROOT.parent / "shared"))
+    if not folder.is_dir():
+        pytest.skip(f"needs the folder of true values and measurements, {folder}")
+    return folder
+
+
+@pytest.fixture
+def standard_promotion():
+    """For tests of what mixed dtypes and ranks give."""
+    with jax.numpy_dtype_promotion("standard"), jax.numpy_rank_promotion("allow"):
+        yield

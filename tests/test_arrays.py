@@ -1,0 +1,71 @@
+from fractions import Fraction
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from pendax._arrays import common, concrete, require, two_product
+
+
+@pytest.mark.parametrize("compiled", [False, True])
+def test_product_is_error_free(dtype, compiled):
+    rng = np.random.default_rng(0)
+    a, b = (rng.uniform(-1, 1, 2000) * 2.0 ** rng.integers(-20, 20, 2000) for _ in range(2))
+    a, b = a.astype(dtype), b.astype(dtype)
+    head, tail = (jax.jit(two_product) if compiled else two_product)(jnp.asarray(a), jnp.asarray(b))
+    assert head.dtype == tail.dtype == dtype
+    for x, y, h, t in zip(*(np.asarray(z, float) for z in (a, b, head, tail)), strict=True):
+        assert Fraction(x) * Fraction(y) == Fraction(h) + Fraction(t)
+        assert abs(t) <= abs(h) * np.finfo(dtype).eps / 2
+
+
+def test_common_broadcasts_to_one_dtype(dtype):
+    x, y, z = common(x=jnp.ones((3, 1), dtype), y=2.0, z=jnp.zeros(4, dtype))
+    assert x.shape == y.shape == z.shape == (3, 4)
+    assert x.dtype == y.dtype == z.dtype == dtype
+    assert common(n=3)[0].dtype == dtype
+    assert common(h=jnp.float16(1.0), x=2.0)[0].dtype == jnp.float16
+
+
+def test_mixed_precision_gives_the_wider(standard_promotion):
+    assert common(x=jnp.float32(1), y=jnp.float64(1))[0].dtype == jnp.float64
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        ({"x": 1j}, "Argument `x` must be real numbers, but got complex128."),
+        ({"x": True}, "Argument `x` must be real numbers, but got bool."),
+        ({"x": "one"}, "Argument `x` must be a number or an array, but got str."),
+        ({"x": [1.0]}, "Argument `x` must be a number or an array, but got list."),
+        (
+            {"x": np.ones(2), "y": np.ones(3)},
+            r"Arguments must broadcast together, but got shapes `x` \(2,\), `y` \(3,\).",
+        ),
+    ],
+)
+def test_common_names_what_is_wrong(arguments, message):
+    with pytest.raises(ValueError, match=message):
+        common(**arguments)
+
+
+def test_require_sees_values_but_not_tracers_or_nan():
+    def positive(x):
+        return x > 0
+
+    message = "Argument `x` must be positive, but got -1.0."
+    with pytest.raises(ValueError, match=message):
+        require("x", -1.0, "positive", positive)
+    with pytest.raises(ValueError, match=message):
+        require("x", jnp.array([2.0, -1.0, -3.0]), "positive", positive)
+    require("x", np.nan, "positive", positive)
+    require("x", None, "positive", positive)
+
+    @jax.jit
+    def traced(x):
+        require("x", x, "positive", positive)
+        assert concrete(x) is None
+        return x
+
+    traced(-1.0)
