@@ -1,16 +1,19 @@
 """From whatever the caller passes to arrays of one shape and dtype, and exact products."""
 
+from typing import Any
+
 import jax
 import jax.numpy as jnp
 import numpy as np
 from jax import lax
+from jax.core import Tracer
 from jaxtyping import Array, Float
 
 # What JAX takes for an array (its `ArrayLike`, which has no isinstance for tracers).
 NUMBERS = (jax.Array, np.ndarray, np.generic, bool, int, float, complex)
 
 
-def common(**arguments: object) -> list[Float[Array, "..."]]:
+def common(**arguments: Any) -> list[Float[Array, "..."]]:
     """The arguments as real floating arrays of one shape and dtype.
 
     The dtype is `jnp.result_type` of them all, Python scalars and integers weak;
@@ -34,7 +37,7 @@ def common(**arguments: object) -> list[Float[Array, "..."]]:
     return [jnp.broadcast_to(x, shape) for x in arrays]
 
 
-def floating(*arguments: object) -> np.dtype:
+def floating(*arguments: Any) -> np.dtype:
     """`jnp.result_type` of the arguments, a floating type in any case."""
     dtype = jnp.result_type(*arguments)
     return dtype if jnp.issubdtype(dtype, jnp.floating) else jnp.result_type(float)
@@ -42,7 +45,7 @@ def floating(*arguments: object) -> np.dtype:
 
 def concrete(x: object) -> np.ndarray | None:
     """The values of `x` where Python can see them (no tracer, a number), else None."""
-    if isinstance(x, jax.core.Tracer) or not isinstance(x, NUMBERS):
+    if isinstance(x, Tracer) or not isinstance(x, NUMBERS):
         return None
     return np.asarray(x)
 

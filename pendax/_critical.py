@@ -13,7 +13,6 @@ from functools import lru_cache, partial
 from typing import Literal
 
 import equinox as eqx
-
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
@@ -26,9 +25,7 @@ FloatArray = Float[Array, "..."]
 Side = Literal["lower", "upper"]
 
 
-def critical_law(
-    t: ArrayLike, side: Side, epsilon: ArrayLike = 1.0, order: int = 0
-) -> FloatArray:
+def critical_law(t: ArrayLike, side: Side, epsilon: ArrayLike = 1.0, order: int = 0) -> FloatArray:
     """ω a distance t from the separatrix, by the law of chosen order, rad/s.
 
     **Arguments:**
@@ -49,7 +46,8 @@ def critical_law(
     if side not in ("lower", "upper"):
         raise ValueError(f'Argument `side` must be "lower" or "upper", but got {side!r}.')
     require("epsilon", epsilon, "positive", lambda x: x > 0)
-    return _critical_law(*common(t=t, epsilon=epsilon), side, order)
+    t, epsilon = common(t=t, epsilon=epsilon)
+    return _critical_law(t, epsilon, side, order)
 
 
 class CriticalSide(eqx.Module):
@@ -94,8 +92,8 @@ def fit_critical_law(
     """
     require("epsilon", epsilon, "a positive scalar", lambda x: (x > 0) & (x.ndim == 0))
     v0, omega, epsilon = common(v0=v0, omega=omega, epsilon=epsilon)
-    if v0.ndim != 1:
-        raise ValueError(f"Argument `v0` must have one axis, but got shape {v0.shape}.")
+    if v0.ndim != 1 or v0.size == 0:
+        raise ValueError(f"Argument `v0` must have one axis of points, but got shape {v0.shape}.")
     # optimistix keeps some state in the default dtype: float32 data are fitted in it.
     wide = jnp.result_type(float)
     law = _fit(*(x.astype(wide) for x in (v0, omega, epsilon[0])), order)
@@ -173,12 +171,16 @@ def _law(t, amplitude, scale, a, b):
 
 
 def _series(x: FloatArray, sign: int, order: int) -> tuple[FloatArray, FloatArray]:
-    """A(±x) and B(±x), to the power `order`."""
-    a, b = (
-        [float(c) * sign**n for n, c in enumerate(series)] for series in coefficients(order)
-    )
-    one = jnp.ones_like(x)
-    return tuple(sum((c * x**n for n, c in enumerate(cs)), 0 * one) for cs in (a, b))
+    """A(±x) and B(±x), to the power `order`, by Horner's rule."""
+
+    def polynomial(series):
+        total = jnp.zeros_like(x)
+        for n in range(order, -1, -1):
+            total = total * x + float(series[n]) * sign**n
+        return total
+
+    a, b = coefficients(order)
+    return polynomial(a), polynomial(b)
 
 
 @lru_cache
@@ -211,5 +213,3 @@ def coefficients(order: int) -> tuple[tuple[Fraction, ...], tuple[Fraction, ...]
     log = [Fraction(0)] + [Fraction(1, 2 * n * 4**n) for n in range(1, size)]
     b = [x + y for x, y in zip(b, times(log, a), strict=True)]
     return tuple(a), tuple(b)
-
-

@@ -98,9 +98,7 @@ def rise_and_gap(
 
 
 @jax.custom_jvp
-def _gap(
-    four: FloatArray, v0: FloatArray, sin: FloatArray, cos: FloatArray
-) -> FloatArray:
+def _gap(four: FloatArray, v0: FloatArray, sin: FloatArray, cos: FloatArray) -> FloatArray:
     """four cos² − v0², sin² + cos² = 1, to the last digit of the floats as given.
 
     v0² is an error-free product: right also where √ε is no float, and
@@ -123,9 +121,7 @@ def _gap_jvp(primals, tangents):
     return _gap(four, v0, sin, cos), slope
 
 
-def _scaled(
-    epsilon: FloatArray, v0: FloatArray
-) -> tuple[FloatArray, FloatArray, FloatArray]:
+def _scaled(epsilon: FloatArray, v0: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
     """(unit, ε/unit², v0/unit), unit a power of two near the larger of √ε and |v0|.
 
     Exact, and neither v0² nor a product of two velocities can then over- or underflow.
@@ -166,9 +162,7 @@ class Motion(NamedTuple):
 
 
 @jax.jit
-def motion(
-    epsilon: FloatArray, t: FloatArray, v0: FloatArray, theta0: FloatArray
-) -> Motion:
+def motion(epsilon: FloatArray, t: FloatArray, v0: FloatArray, theta0: FloatArray) -> Motion:
     """θ (unwrapped) and θ̇ a time t after (θ0, v0); arguments of one shape and dtype.
 
     S = sin(θ/2), C = cos(θ/2), W = θ̇/(2√ε) of the motion that passes the bottom at

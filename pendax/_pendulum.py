@@ -5,7 +5,6 @@ from collections.abc import Callable
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-
 from jaxtyping import Array, ArrayLike, Float
 
 from ._arrays import NUMBERS, common, floating, require
@@ -83,5 +82,3 @@ def energy(pendulum: Pendulum, theta: ArrayLike, v: ArrayLike) -> Float[Array, "
     """
     theta, v, epsilon = common(theta=theta, v=v, epsilon=pendulum.epsilon)
     return 0.5 * v * v + 2 * epsilon * jnp.sin(0.5 * theta) ** 2
-
-

@@ -37,7 +37,10 @@ def parameters(dtype, seed=1):
     yield "near one", 1 - 10.0 ** rng.uniform(np.log10(np.finfo(dtype).eps), -1, 200)
     yield "below one", np.array([np.nextafter(one, one - one), 1 - np.finfo(dtype).eps])
     yield "negative", -np.geomspace(1e-6, huge, 400)
-    yield "edges", np.array([-1.0, np.nextafter(-one, 0 * one), 0.0, 0.5, 0.5 + np.finfo(dtype).eps])
+    yield (
+        "edges",
+        np.array([-1.0, np.nextafter(-one, 0 * one), 0.0, 0.5, 0.5 + np.finfo(dtype).eps]),
+    )
 
 
 def test_k_and_e(dtype):

@@ -117,7 +117,9 @@ def test_general_start_has_the_frequency_of_its_energy():
     v0, theta0 = rng.uniform(-2, 2, 200), rng.uniform(-10, 10, 200)
     speed = np.sqrt(v0**2 + 4 * 1.7 * np.sin(theta0 / 2) ** 2)
     pendulum = Pendulum(1.7)
-    np.testing.assert_allclose(frequency(pendulum, v0, theta0), frequency(pendulum, speed), rtol=1e-11)
+    np.testing.assert_allclose(
+        frequency(pendulum, v0, theta0), frequency(pendulum, speed), rtol=1e-11
+    )
     assert 0 < frequency(pendulum, 0.0, np.pi) < 0.1  # the float π is not at the top
     np.testing.assert_allclose(amplitude(pendulum, 0.0, 3.0), 3.0, rtol=1e-15)
 
@@ -158,9 +160,7 @@ def test_motion_from_the_bottom(dtype):
 
             theta, v = motion(x, y)
             step = mp.mpf(10) ** -30
-            by_v0 = [
-                (a - b) / step for a, b in zip(motion(x, y + step), (theta, v), strict=True)
-            ]
+            by_v0 = [(a - b) / step for a, b in zip(motion(x, y + step), (theta, v), strict=True)]
             # Angles modulo 4π: the count of turns is tested on its own.
             off = references.exact(run.theta[i]) - theta
             off -= 4 * mp.pi * mp.nint(off / (4 * mp.pi))

@@ -234,7 +234,11 @@ def test_addition_theorem():
 
 def test_against_the_sources_table(shared):
     rows = np.genfromtxt(
-        shared / "truth" / "jacobi_table.csv", delimiter=",", names=True, dtype=None, encoding="utf-8"
+        shared / "truth" / "jacobi_table.csv",
+        delimiter=",",
+        names=True,
+        dtype=None,
+        encoding="utf-8",
     )
     rows = rows[rows["m"] < 0.999]  # the decimal m, beyond that not its float, is the argument
     values = ellipj(rows["u"], rows["m"])

@@ -28,4 +28,6 @@ def output_folder(out: Path) -> Iterator[Path]:
         finally:
             shutil.rmtree(scratch, ignore_errors=True)
     except OSError as error:
-        raise UserError(f"{error.filename or out}: {(error.strerror or str(error)).lower()}") from None
+        raise UserError(
+            f"{error.filename or out}: {(error.strerror or str(error)).lower()}"
+        ) from None

@@ -40,7 +40,9 @@ def read_recording(
     try:
         _, header = next(rows)
     except StopIteration:
-        raise UserError(f"{path}: expected a header line and rows of numbers, but it is empty") from None
+        raise UserError(
+            f"{path}: expected a header line and rows of numbers, but it is empty"
+        ) from None
     i = _column(path, header, time, _TIME, "--time", "t_s")
     j = _column(path, header, angle, _ANGLE, "--angle", "theta_deg or theta_rad")
     unit = unit or next((u for u in _UNITS if header[j].lower().endswith("_" + u)), None)
@@ -86,7 +88,9 @@ def _column(
     if name is not None:
         if name in header:
             return header.index(name)
-        raise UserError(f"{path}: expected a column {name}, but the columns are {', '.join(header)}")
+        raise UserError(
+            f"{path}: expected a column {name}, but the columns are {', '.join(header)}"
+        )
     for i, column in enumerate(header):
         if pattern.match(column):
             return i

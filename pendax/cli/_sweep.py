@@ -122,12 +122,15 @@ def _fit(swept: "Sweep", low: float, high: float) -> "CriticalLaw":
     from .. import Result, fit_critical_law
 
     window = (swept.t >= low) & (swept.t <= high)
+    below = int((window & swept.below).sum())
+    if min(below, int(window.sum()) - below) < 2:
+        raise UserError(
+            f"--window: expected two or more velocities of the sweep on each side, but "
+            f"{low:g} … {high:g} rad/s holds {below} below and {int(window.sum()) - below} above"
+        )
     law = fit_critical_law(swept.v0[window], swept.omega[window], swept.epsilon)
     if not law.result == Result.successful:
-        raise UserError(
-            f"--window: expected two or more velocities of the sweep on each side within "
-            f"{low:g} … {high:g} rad/s, but the fit of the law failed"
-        )
+        raise UserError(f"--window: the law could not be fitted on {low:g} … {high:g} rad/s")
     return law
 
 

@@ -43,7 +43,7 @@ def _window(swept: Sweep, low: float, high: float) -> tuple[np.ndarray, np.ndarr
 @_styled
 def figure_8(swept: Sweep, measured: Measured) -> Figure:
     """ω(v0) below the separatrix, (a) whole, (b) and (c) ever nearer to it."""
-    figure = new_figure(12, 4)
+    figure = new_figure(12.0, 4.0)
     axes = figure.subplots(1, 3)
     for ax, letter, low in zip(axes, "abc", (0.0, 1.9, 1.999), strict=True):
         frequency_curve(ax, *_window(swept, low, 2.0), swept.epsilon)
@@ -68,7 +68,7 @@ def figure_11(swept: Sweep, measured: Measured) -> Figure:
 @_styled
 def figure_13(swept: Sweep, measured: Measured) -> Figure:
     """ω(v0) on both sides, and the measured swing."""
-    figure = new_figure(8, 5)
+    figure = new_figure(8.0, 5.0)
     ax = frequency_curve(figure.subplots(), swept.v0, swept.omega, swept.epsilon)
     if measured:
         _points(ax, measured)
@@ -95,7 +95,7 @@ def _approach(number: int, side: Side) -> Callable[[Sweep, Measured], Figure]:
         root = np.sqrt(swept.epsilon)
         mask = (swept.below == (side == "lower")) & (swept.t > 0) & (swept.t < root)
         points = swept.t[mask], swept.omega[mask]
-        figure = new_figure(11, 4.5)
+        figure = new_figure(11.0, 4.5)
         left, right = figure.subplots(1, 2)
         critical_approach(left, *points, side, swept.epsilon).set_title(f"{number}: ω → 0")
         law_deviation(right, *points, side, swept.epsilon).set_title("where the law holds")

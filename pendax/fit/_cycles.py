@@ -1,5 +1,6 @@
 """A recorded swing cut into cycles."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -55,7 +56,7 @@ def cycles(ts: ArrayLike, theta: ArrayLike) -> Cycles:
         return Cycles(*np.empty((5, 0)))
     swings, level = _swings(theta)
     step = np.median(np.diff(ts))
-    crossings = [_crossing(ts, theta - level, a, b, step) for a, b in zip(swings, swings[1:])]
+    crossings = [_crossing(ts, theta - level, a, b, step) for a, b in pairwise(swings)]
     peaks = [_peak(ts, theta - level, swing) for swing in swings]
 
     rows, i = [], 0

@@ -22,7 +22,9 @@ def critical_approach(
     """
     colour, distance, prefactor = _NAMES[side]
     x, y, root = _sorted(t, omega, epsilon)
-    law = rf"$\omega/\sqrt{{\varepsilon}}={prefactor}\,/\,\ln(4\,(t/\sqrt{{\varepsilon}})^{{-1/2}})$"
+    law = (
+        rf"$\omega/\sqrt{{\varepsilon}}={prefactor}\,/\,\ln(4\,(t/\sqrt{{\varepsilon}})^{{-1/2}})$"
+    )
     ax.plot(x, y, color=COLOURS[colour], lw=4, alpha=0.5, label="exact")
     for order, style, label in ((0, "--", law), (1, ":", "with the next order in t")):
         approximate = np.asarray(critical_law(x * root, side, epsilon, order)) / root

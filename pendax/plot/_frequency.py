@@ -26,7 +26,13 @@ def frequency_curve(
             drawn = _thinned(x[mask], y[mask], most)
             ax.plot(x[mask][drawn], y[mask][drawn], color=COLOURS[side], label=label)
     if x.min() <= 2 <= x.max():
-        ax.axvline(2, color=COLOURS["separatrix"], ls="--", lw=1, label=r"separatrix $v_0=2\sqrt{\varepsilon}$")
+        ax.axvline(
+            2,
+            color=COLOURS["separatrix"],
+            ls="--",
+            lw=1,
+            label=r"separatrix $v_0=2\sqrt{\varepsilon}$",
+        )
     ax.set(xlabel=V0_LABEL, ylabel=OMEGA_LABEL)
     return ax
 

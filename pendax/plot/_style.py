@@ -1,5 +1,7 @@
 """One look throughout."""
 
+from typing import Any
+
 import matplotlib as mpl
 from matplotlib.figure import Figure
 
@@ -13,7 +15,7 @@ COLOURS = {
     "data": "#CC79A7",
 }
 
-STYLE = {
+STYLE: dict[Any, Any] = {
     "figure.dpi": 150,
     "figure.constrained_layout.use": True,
     "font.size": 11,

@@ -86,9 +86,7 @@ def _classify(m: FloatArray, m1: FloatArray) -> _Parameter:
 
 
 @jax.jit
-def _jacobi(
-    u: FloatArray, m: FloatArray, m1: FloatArray
-) -> tuple[FloatArray, ...]:
+def _jacobi(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
     """(sn, cn, dn, ph) for arguments of one dtype; m + m1 = 1, each as exact as known.
 
     Every operation is an analytic function of u, m and m1 within its class, and the
@@ -117,9 +115,7 @@ def _jacobi(
     )
 
 
-def _reduce(
-    w: FloatArray, parameter: _Parameter, rungs: Ladder
-) -> tuple[FloatArray, FloatArray]:
+def _reduce(w: FloatArray, parameter: _Parameter, rungs: Ladder) -> tuple[FloatArray, FloatArray]:
     """w less its whole half periods, and their number.
 
     The half period of w is pi on the circular side and -ln|q(p)| on the hyperbolic
