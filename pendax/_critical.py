@@ -96,7 +96,7 @@ def fit_critical_law(
         raise ValueError(f"Argument `v0` must have one axis of points, but got shape {v0.shape}.")
     # optimistix keeps some state in the default dtype: float32 data are fitted in it.
     wide = jnp.result_type(float)
-    law = _fit(*(x.astype(wide) for x in (v0, omega, epsilon[0])), order)
+    law = _fit(v0.astype(wide), omega.astype(wide), epsilon[0].astype(wide), order)
     return jax.tree.map(lambda x: x.astype(v0.dtype) if x.dtype == wide else x, law)
 
 
