@@ -5,7 +5,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common
-from ._landen import Ladder, ladder, log_nome
+from ._landen import Ladder, ladder, log_nome, nome16
 from ._precision import widened
 
 
@@ -94,9 +94,8 @@ def _complete(
     scale = jnp.sqrt(scale)
     rungs = ladder(p)
 
-    p_log = jnp.where(circular, 0.25, p)
-    root_log = jnp.where(circular, 0.75**0.5, rungs.root)
-    quarter = jnp.where(circular, 0.5 * jnp.pi, 0.5 * log_nome(p_log, root_log))
+    q16 = jnp.where(circular, 1, nome16(rungs))
+    quarter = jnp.where(circular, 0.5 * jnp.pi, 0.5 * log_nome(q16))
     k = quarter * rungs.product
     s = _squares(p, rungs)
     e = jnp.where(circular, k * (1 - s), 1 / rungs.product + k * s)

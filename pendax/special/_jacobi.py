@@ -8,7 +8,8 @@ from jax import lax
 from jaxtyping import Array, ArrayLike, Bool, Float
 
 from .._arrays import common
-from ._landen import Ladder, ladder, log_nome
+from ._elementary import angle, decay, sin_cos
+from ._landen import Ladder, ladder, log_nome, nome16
 from ._precision import widened
 
 FloatArray = Float[Array, "..."]
@@ -72,6 +73,7 @@ class _Parameter(NamedTuple):
     ascends: Bool[Array, "..."]
     p: FloatArray
     scale: FloatArray
+    inverse_scale: FloatArray
 
 
 def _classify(m: FloatArray, m1: FloatArray) -> _Parameter:
@@ -80,9 +82,11 @@ def _classify(m: FloatArray, m1: FloatArray) -> _Parameter:
     circular = (m <= 0.5) & ~negative
     hyperbolic = (m > 0.5) & ~reciprocal
     divisor = jnp.where(reciprocal, m, jnp.where(negative, m1, 1))
-    p = jnp.where(circular, m, jnp.where(hyperbolic, m1, 1 / divisor))
+    inverse = 1 / divisor
+    p = jnp.where(circular, m, jnp.where(hyperbolic, m1, inverse))
     ascends = hyperbolic | negative
-    return _Parameter(circular, reciprocal, negative, ascends, p, jnp.sqrt(divisor))
+    scale = jnp.sqrt(divisor)
+    return _Parameter(circular, reciprocal, negative, ascends, p, scale, scale * inverse)
 
 
 @jax.jit
@@ -99,14 +103,14 @@ def _jacobi(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, .
     # |u| by its sign: jnp.abs has no derivative at 0.
     sign = jnp.where(u < 0, -1, 1).astype(u.dtype)
     w = sign * u * (parameter.scale / rungs.product)
-    w, turns = _reduce(w, parameter, rungs)
+    w, turns = _reduce(w, nome16(rungs), parameter.ascends)
     flip = jnp.where(w < 0, -1, 1).astype(u.dtype)
     sn, cn, dn = _first_quarter(flip * w, parameter, rungs)
+    ph = flip * angle(sn, cn)
 
     # A half period on, m <= 1 has turned over (sn, cn) and m > 1 swung back (sn, dn).
     swings = m1 < 0
     parity = 1 - 2 * (turns - 2 * jnp.floor(0.5 * turns))
-    ph = flip * 2 * jnp.arctan(sn / (1 + cn))
     return (
         sign * parity * flip * sn,
         jnp.where(swings, cn, parity * cn),
@@ -115,22 +119,29 @@ def _jacobi(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, .
     )
 
 
-def _reduce(w: FloatArray, parameter: _Parameter, rungs: Ladder) -> tuple[FloatArray, FloatArray]:
+@jax.custom_jvp
+def _reduce(
+    w: FloatArray, q16: FloatArray, ascends: Bool[Array, "..."]
+) -> tuple[FloatArray, FloatArray]:
     """w less its whole half periods, and their number.
 
     The half period of w is pi on the circular side and -ln|q(p)| on the hyperbolic
-    one, which is infinite at p = 0; there, and wherever no half period is taken off,
-    log_nome is not differentiated (0 * inf).
+    one, which is infinite at p = 0.
     """
-    half_period = jnp.where(
-        parameter.ascends, lax.stop_gradient(log_nome(parameter.p, rungs.root)), jnp.pi
-    )
-    turns = lax.stop_gradient(jnp.round(w / half_period))
-    reduces = turns != 0
-    p = jnp.where(reduces & parameter.ascends, parameter.p, 0.25)
-    root = jnp.where(reduces & parameter.ascends, rungs.root, 0.75**0.5)
-    half_period = jnp.where(parameter.ascends, log_nome(p, root), jnp.pi)
+    endless = ascends & (q16 == 0)
+    half_period = jnp.where(ascends, log_nome(jnp.where(endless, 1, q16)), jnp.pi)
+    turns = jnp.where(endless, 0, jnp.round(w / half_period))
     return w - turns * half_period, turns
+
+
+@_reduce.defjvp
+def _reduce_jvp(primals, tangents):
+    # Where no half period is taken off, ln|q| is not differentiated: 0 * inf.
+    _, q16, ascends = primals
+    reduced, turns = _reduce(*primals)
+    moves = ascends & (turns != 0)
+    slope = jnp.where(moves, turns, 0) / jnp.where(moves, q16, 1)
+    return (reduced, turns), (tangents[0] + slope * tangents[1], jnp.zeros_like(turns))
 
 
 def _first_quarter(
@@ -149,13 +160,11 @@ def _first_quarter(
     by y = e^w, so that no step over- or underflows, for m1 of any size.
     """
     ascends = parameter.ascends
-    straight = jnp.where(ascends, w, 0)
-    around = jnp.where(ascends, 0, w)
-    inverse_y = jnp.exp(-straight)
-    y = jnp.exp(jnp.minimum(straight, jnp.log(jnp.finfo(w.dtype).max) - 1))
-    half = -0.5 * jnp.expm1(-2 * straight)
-    s = jnp.where(ascends, half, jnp.sin(around))
-    c = jnp.where(ascends, 1 - half, jnp.cos(around))
+    sin, cos = sin_cos(jnp.where(ascends, 0, w))
+    e, half = decay(jnp.where(ascends, w, 0))
+    s = jnp.where(ascends, half, sin)
+    c = jnp.where(ascends, 1 - half, cos)
+    y = 1 / jnp.maximum(e, jnp.finfo(w.dtype).tiny)
     signed_y = jnp.where(ascends, -y, 1)
 
     d = h = jnp.ones_like(w)
@@ -164,18 +173,19 @@ def _first_quarter(
         s, c, d, h = (1 + rung) * s * h, c * d, h * h - shift, h * h + shift
     # The last step takes y out of d and h again.  Its l y is p y / (1 + root)^2: the
     # smallest normal p and the largest y multiply before anything is divided by 4.
-    rung, root = rungs.rungs[0], rungs.root
-    shift = signed_y * parameter.p / ((1 + root) * (1 + root)) * (s * s)
-    square = inverse_y * (h * h)
+    rung = rungs.rungs[0]
+    shift = signed_y * parameter.p * rungs.square * (s * s)
+    square = e * (h * h)
     s, c, d, h = (1 + rung) * s * h, c * d, square - shift, square + shift
 
-    descends, negative = parameter.circular | parameter.reciprocal, parameter.negative
-    swaps = parameter.reciprocal
-    unit = jnp.where(descends, h, jnp.where(negative, d, c))
-    sn = s / (parameter.scale * unit)
-    cn = jnp.where(parameter.circular, c, jnp.where(swaps, d, h)) / unit
-    dn = jnp.where(swaps | negative, c, d) / unit
-    return _at_most_one(sn), _at_most_one(cn), dn
+    circular, reciprocal, negative = parameter.circular, parameter.reciprocal, parameter.negative
+    unit = 1 / jnp.where(circular | reciprocal, h, jnp.where(negative, d, c))
+    sn = s * unit * parameter.inverse_scale
+    cn = jnp.where(circular, c, jnp.where(reciprocal, d, h)) * unit
+    dn = jnp.where(reciprocal | negative, c, d) * unit
+    # sn^2 + cn^2 = 1 but for the rounding of the steps: taken back, and not differentiated.
+    onto = lax.stop_gradient(1.5 - 0.5 * (sn * sn + cn * cn))
+    return _at_most_one(sn * onto), _at_most_one(cn * onto), dn
 
 
 def _at_most_one(x: FloatArray) -> FloatArray:

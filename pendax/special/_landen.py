@@ -19,11 +19,15 @@ from typing import NamedTuple
 import jax.numpy as jnp
 from jaxtyping import Array, Float
 
+from ._elementary import half_root, log
+
 
 class Ladder(NamedTuple):
     """The rungs and what is built from them."""
 
+    p: Float[Array, "..."]
     root: Float[Array, "..."]  # sqrt(1 - p), the complementary modulus
+    square: Float[Array, "..."]  # (1 + root)^-2, l_1 = p * square
     rungs: tuple[Float[Array, "..."], ...]  # l_1, l_2, ... until l_n < eps
     product: Float[Array, "..."]  # prod(1 + l_n) = 1 / AGM(1, sqrt(1 - p))
 
@@ -34,8 +38,9 @@ def ladder(p: Float[Array, "..."]) -> Ladder:
     |l_1| <= 0.172, l_2 <= 0.0075, l_3 <= 1.4e-5, l_4 <= 5e-11, l_5 <= 6e-22.
     """
     root = jnp.sqrt(1 - p)
-    l1 = p / ((1 + root) * (1 + root))
-    r2 = l1 / (1 + jnp.sqrt(1 - l1 * l1))
+    square = 1 / ((1 + root) * (1 + root))
+    l1 = p * square
+    r2 = 0.5 * l1 * half_root(l1 * l1)
     l2 = r2 * r2
     # sqrt(1 - x) to O(x^3), x = l2^2 <= 5.6e-5: the first omitted term is
     # 4e-14 of l3, which is 5e-19 of 1.
@@ -47,23 +52,27 @@ def ladder(p: Float[Array, "..."]) -> Ladder:
     product = 1 + rungs[-1]
     for rung in rungs[-2::-1]:
         product = product * (1 + rung)
-    return Ladder(root, rungs, product)
+    return Ladder(p, root, square, rungs, product)
 
 
-def log_nome(p: Float[Array, "..."], root: Float[Array, "..."]) -> Float[Array, "..."]:
-    """-ln|q(p)| = pi K(1 - p) / K(p), for -1 <= p <= 1/2; +inf at p = 0.
+def nome16(rungs: Ladder) -> Float[Array, "..."]:
+    """16 q(p), of the sign of p; q = exp(-pi K(1 - p) / K(p)) in size.
 
     q = e + 2 e^5 + 15 e^9 + 150 e^13, e = (1 - b) / (2 (1 + b)), b = (1 - p)^(1/4)
-    (DLMF 19.5.7), e written without its subtraction; |e| <= 0.0432, and the first
-    omitted term, 1707 e^16, is 3e-19.  16 q instead of q keeps p down to the
-    smallest normal number from underflowing.
+    (DLMF 19.5.7), e = l_1 (1 + b^2) / (2 (1 + b)^2) without its subtraction;
+    |e| <= 0.0432, and the first omitted term, 1707 e^16, is 3e-19.  16 q instead of q
+    keeps p down to the smallest normal number from underflowing.
     """
-    b = jnp.sqrt(root)
-    e16 = 8 * p / ((1 + root) * ((1 + b) * (1 + b)))
-    e = e16 / 16
+    b = jnp.sqrt(rungs.root)
+    q16 = rungs.p * (8 * rungs.square * (1 + rungs.root) / ((1 + b) * (1 + b)))
+    e = q16 / 16
     e4 = (e * e) * (e * e)
-    q16 = e16 * (1 + e4 * (2 + e4 * (15 + 150 * e4)))
-    return 4 * _LN2 - jnp.log(jnp.where(q16 < 0, -q16, q16))
+    return q16 * (1 + e4 * (2 + e4 * (15 + 150 * e4)))
+
+
+def log_nome(q16: Float[Array, "..."]) -> Float[Array, "..."]:
+    """-ln|q| = pi K(1 - p) / K(p)."""
+    return 4 * _LN2 - log(jnp.where(q16 < 0, -q16, q16))
 
 
 _LN2 = 0.6931471805599453
