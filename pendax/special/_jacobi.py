@@ -179,10 +179,12 @@ def _first_quarter(
     s, c, d, h = (1 + rung) * s * h, c * d, square - shift, square + shift
 
     circular, reciprocal, negative = parameter.circular, parameter.reciprocal, parameter.negative
-    unit = 1 / jnp.where(circular | reciprocal, h, jnp.where(negative, d, c))
-    sn = s * unit * parameter.inverse_scale
-    cn = jnp.where(circular, c, jnp.where(reciprocal, d, h)) * unit
-    dn = jnp.where(reciprocal | negative, c, d) * unit
+    # Three quotients, not products with one reciprocal: XLA computes what leads to a
+    # quotient once for all who use it, but what leads to a product once for each.
+    unit = jnp.where(circular | reciprocal, h, jnp.where(negative, d, c))
+    sn = s / (unit * parameter.scale)
+    cn = jnp.where(circular, c, jnp.where(reciprocal, d, h)) / unit
+    dn = jnp.where(reciprocal | negative, c, d) / unit
     # sn^2 + cn^2 = 1 but for the rounding of the steps: taken back, and not differentiated.
     onto = lax.stop_gradient(1.5 - 0.5 * (sn * sn + cn * cn))
     return _at_most_one(sn * onto), _at_most_one(cn * onto), dn
