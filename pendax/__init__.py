@@ -1,4 +1,6 @@
-"""The pendulum beyond small angles, and the Josephson junction that obeys it, in JAX."""
+"""The pendulum beyond small angles, exact and differentiable, in JAX."""
+
+from importlib import import_module
 
 from . import special as special
 from ._critical import CriticalLaw as CriticalLaw
@@ -17,3 +19,10 @@ from .fit import Cycles as Cycles
 from .fit import Fit as Fit
 from .fit import cycles as cycles
 from .fit import fit_frequency as fit_frequency
+
+
+def __getattr__(name: str):
+    # Matplotlib is loaded when a plot is asked for, not before.
+    if name in ("plot", "figures"):
+        return import_module(f".{name}", __name__)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

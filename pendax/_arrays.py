@@ -1,5 +1,6 @@
 """From whatever the caller passes to arrays of one shape and dtype, and exact products."""
 
+from collections.abc import Callable
 from typing import Any
 
 import jax
@@ -35,6 +36,20 @@ def common(**arguments: Any) -> list[Float[Array, "..."]]:
         shapes = ", ".join(f"`{name}` {jnp.shape(x)}" for name, x in arguments.items())
         raise ValueError(f"Arguments must broadcast together, but got shapes {shapes}.") from None
     return [jnp.broadcast_to(x, shape) for x in arrays]
+
+
+def widened(function: Callable) -> Callable:
+    """`function` of arrays of one dtype, with float16 and bfloat16 carried in float32,
+    and its results rounded."""
+
+    def call(*arrays):
+        dtype = arrays[0].dtype
+        if dtype in (jnp.float16, jnp.bfloat16):
+            outputs = function(*(x.astype(jnp.float32) for x in arrays))
+            return jax.tree.map(lambda x: x.astype(dtype), outputs)
+        return function(*arrays)
+
+    return call
 
 
 def floating(*arguments: Any) -> np.dtype:

@@ -36,7 +36,8 @@ def critical_law(t: ArrayLike, side: Side, epsilon: ArrayLike = 1.0, order: int 
     - `order`: the power of t/√ε up to which the series are kept.  0 is the leading
       law ω = A / ln(B/√t), A = π√ε/2 below and π√ε above, B = 4 ε^¼.
 
-    **Returns:** ω; 0 at t = 0, NaN for t < 0 or, under a transformation, ε ≤ 0.  The
+    **Returns:** ω; 0 at t = 0, NaN for t < 0, for t so large that the law has no positive
+    value (16 √ε for the leading one) or, under a transformation, ε ≤ 0.  The
     relative error is of the order of (t/(4√ε))^(order + 1).
 
     **Raises:** `ValueError` for another `side`, a negative `order`, a visible ε ≤ 0.
@@ -84,8 +85,7 @@ def fit_critical_law(
     - `order`: as for [`critical_law`][]: 0 fits ω = A / ln(B/√t); higher orders fit the
       same A and B with the series' corrections held, for windows far from t = 0.
 
-    **Returns:** a [`CriticalLaw`][].  Levenberg–Marquardt on ln A and ln B, both sides
-    at once, relative residuals, from the line through the nearest and farthest point.
+    **Returns:** a [`CriticalLaw`][], by Gauss–Newton on relative residuals.
     With fewer than two distances on a side, that side is NaN and `result` says so.
 
     t is recomputed from the rounded v0 as |v0² − 4ε| / (|v0| + 2√ε), v0² error-free.
@@ -134,40 +134,49 @@ def _fit(v0: FloatArray, omega: FloatArray, epsilon: FloatArray, order: int) -> 
         return _fit_side(jnp.where(used, t, 1), jnp.where(used, omega, 1), a, b, used)
 
     (lower, ok_lower), (upper, ok_upper) = one(below, 1), one(~below, -1)
-    ok = ok_lower & ok_upper
-    result = Result.where(ok, Result.successful, Result.not_converged)
+    result = Result.where(ok_lower & ok_upper, Result.successful, Result.not_converged)
+    few = jnp.minimum(lower.count, upper.count) < 2
+    result = Result.where(few, Result.too_few_points, result)
     return CriticalLaw(lower, upper, upper.amplitude / lower.amplitude, result)
 
 
 def _fit_side(t, omega, a, b, used) -> tuple[CriticalSide, Array]:
     import optimistix as optx
 
-    def residuals(log, _):
-        law = _law(t, jnp.exp(log[0]), jnp.exp(log[1]), a, b)
-        return jnp.where(used, law / omega - 1, 0)
+    # In the unknowns 1/A and (ln B + mean)/A the law's 1/ω is linear, so the iteration
+    # lands in one step.  In ln A and ln B it creeps; Levenberg-Marquardt, at the bottom,
+    may reject every further step and never call itself converged.
+    count = jnp.sum(used)
+    points = count.astype(t.dtype)
+    log = -0.5 * jnp.log(t)
+    mean = jnp.sum(jnp.where(used, log, 0)) / points
 
-    # 1/ω is nearly linear in ln t: A and B of the line through the two end points.
-    near = jnp.argmin(jnp.where(used, t, jnp.inf))
-    far = jnp.argmax(jnp.where(used, t, -jnp.inf))
-    run = 0.5 * (jnp.log(t[far]) - jnp.log(t[near]))
-    amplitude = run / (1 / omega[near] - 1 / omega[far])
-    start = jnp.stack([jnp.log(amplitude), amplitude / omega[near] + 0.5 * jnp.log(t[near])])
+    def residuals(unknowns, _):
+        inverse, shifted = unknowns
+        law = a * (shifted + inverse * (log - mean)) + b * inverse
+        return jnp.where(used, omega * law - 1, 0)
 
     eps = float(jnp.finfo(t.dtype).eps)
-    solver = optx.LevenbergMarquardt(rtol=eps**0.75, atol=eps**0.75)
+    solver = optx.GaussNewton(rtol=eps**0.75, atol=eps**0.75)
+    start = jnp.zeros(2, t.dtype)
     solution = optx.least_squares(residuals, solver, start, max_steps=64, throw=False)
-    count = jnp.sum(used)
-    rms = jnp.sqrt(jnp.sum(residuals(solution.value, None) ** 2) / count.astype(t.dtype))
-    ok = (solution.result == optx.RESULTS.successful) & (run > 0)
-    amplitude, scale = jnp.where(ok, jnp.exp(solution.value), jnp.nan)
+    inverse, shifted = solution.value
+    ok = (solution.result == optx.RESULTS.successful) & (count > 1) & (inverse > 0)
+    amplitude = jnp.where(ok, 1 / inverse, jnp.nan)
+    scale = jnp.exp(shifted * amplitude - mean)
+    law = _law(t, amplitude, scale, a, b)
+    rms = jnp.sqrt(jnp.sum(jnp.where(used, (law / omega - 1) ** 2, 0)) / points)
     return CriticalSide(amplitude, scale, rms, count), ok
 
 
 def _law(t, amplitude, scale, a, b):
-    """A / (a ln(B/√t) + b); NaN for t < 0."""
+    """A / (a ln(B/√t) + b); NaN for t < 0 and where the logarithm is spent."""
     at_zero = t == 0
     log = jnp.log(scale) - 0.5 * jnp.log(jnp.where(at_zero, 1, t))
-    return jnp.where(at_zero, 0, amplitude / (a * log + b))
+    inverse = a * log + b
+    beyond = ~(inverse > 0)  # t ≥ 16 √ε or so: no law there
+    law = jnp.where(beyond, jnp.nan, amplitude / jnp.where(beyond, 1, inverse))
+    return jnp.where(at_zero, 0, law)
 
 
 def _series(x: FloatArray, sign: int, order: int) -> tuple[FloatArray, FloatArray]:

@@ -16,7 +16,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import common, two_product
+from ._arrays import common, two_product, widened
 from ._pendulum import Pendulum, require_free
 from .special import ellipj
 from .special._agm import agm
@@ -44,7 +44,7 @@ def frequency(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> Flo
     """
     require_free(pendulum, "its frequency")
     arrays = common(epsilon=pendulum.epsilon, v0=v0, theta0=theta0)
-    return _frequency(*arrays)
+    return widened(_frequency)(*arrays)
 
 
 def period(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> FloatArray:
@@ -65,7 +65,7 @@ def amplitude(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> Flo
     """
     require_free(pendulum, "its amplitude")
     arrays = common(epsilon=pendulum.epsilon, v0=v0, theta0=theta0)
-    return _amplitude(*arrays)
+    return widened(_amplitude)(*arrays)
 
 
 @jax.jit

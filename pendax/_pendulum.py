@@ -5,6 +5,7 @@ from collections.abc import Callable
 import equinox as eqx
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
 from ._arrays import NUMBERS, common, floating, require
@@ -37,8 +38,8 @@ class Pendulum(eqx.Module):
         beta: ArrayLike | None = None,
         tau: ArrayLike | Callable | None = None,
     ):
-        require("epsilon", epsilon, "positive", lambda x: x > 0)
-        require("beta", beta, "zero or positive", lambda x: x >= 0)
+        require("epsilon", epsilon, "positive", lambda x: (x > 0) & np.isfinite(x))
+        require("beta", beta, "zero or positive", lambda x: (x >= 0) & np.isfinite(x))
         self.epsilon = _inexact(epsilon)
         self.beta = _inexact(beta)
         self.tau = _as_pytree(tau) if callable(tau) else _inexact(tau)
@@ -64,8 +65,12 @@ def _as_pytree(tau: Callable) -> Callable:
     return jax.tree_util.Partial(tau) if any(leaf is tau for leaf in leaves) else tau
 
 
-def require_free(pendulum: Pendulum, what: str) -> None:
-    """ValueError for a scene with damping or torque."""
+def require_free(pendulum: object, what: str) -> None:
+    """ValueError for a scene with damping or torque, or for no scene at all."""
+    if not isinstance(pendulum, Pendulum):
+        raise ValueError(
+            f"Argument `pendulum` must be a Pendulum, but got {type(pendulum).__name__}."
+        )
     if not pendulum.is_free:
         terms = [name for name in ("beta", "tau") if getattr(pendulum, name) is not None]
         raise ValueError(

@@ -6,10 +6,11 @@ from jaxtyping import Array, Bool
 
 
 class Result(eqx.Enumeration):
-    """`==` compares lane by lane; `Result[lane]` is the message."""
+    """`==` compares lane by lane; printing one shows its message."""
 
-    successful = ""
+    successful = "Successful."
     not_a_number = "An argument is NaN or infinite, or a parameter is outside its domain."
+    too_few_points = "A fit needs two or more points on each side."
     not_converged = "The iteration did not converge."
 
 

@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import common
+from ._arrays import common, widened
 from ._exact import motion
 from ._pendulum import Pendulum, require_free
 from ._results import Result, where
@@ -55,7 +55,7 @@ def simulate(
     require_free(pendulum, "its motion in closed form")
     (ts,) = common(ts=ts)
     times, epsilon, v0, theta0, t0 = _lanes(ts, pendulum.epsilon, v0, theta0, t0)
-    theta, v = motion(epsilon, times - t0, v0, theta0)
+    theta, v = widened(motion)(epsilon, times - t0, v0, theta0)
     lanes = tuple(range(theta.ndim - ts.ndim, theta.ndim))
     bad = ~jnp.all(jnp.isfinite(theta) & jnp.isfinite(v), axis=lanes)
     return Trajectory(ts, theta, v, where(bad, Result.not_a_number, Result.successful))

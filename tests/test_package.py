@@ -28,6 +28,10 @@ def test_import_leaves_the_settings_of_jax_alone():
     assert python("import jax, pendax; print(jax.config.jax_enable_x64)").strip() == "False"
 
 
+def test_plots_load_when_asked_for():
+    python("import pendax; pendax.plot.frequency_curve; pendax.figures.CRITICAL['13']")
+
+
 def test_readme_example_runs():
     blocks = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
     assert blocks

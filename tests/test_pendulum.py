@@ -1,3 +1,5 @@
+import inspect
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -12,6 +14,7 @@ from pendax import Pendulum, energy, frequency, simulate
         ({"epsilon": -1.0}, "Argument `epsilon` must be positive, but got -1.0."),
         ({"epsilon": 0}, "Argument `epsilon` must be positive, but got 0."),
         ({"epsilon": np.array([1.0, -2.0])}, "Argument `epsilon` must be positive, but got -2.0."),
+        ({"epsilon": np.inf}, "Argument `epsilon` must be positive, but got inf."),
         ({"beta": -0.1}, "Argument `beta` must be zero or positive, but got -0.1."),
     ],
 )
@@ -41,6 +44,22 @@ def test_tracers_and_other_leaves_pass():
 def test_closed_forms_refuse_damping_and_torque(function):
     with pytest.raises(ValueError, match=r"neither damping nor torque .* got one with `beta`"):
         function(Pendulum(1.0, beta=0.1), 1.0)
+
+
+def test_a_number_is_no_pendulum():
+    with pytest.raises(ValueError, match="Argument `pendulum` must be a Pendulum, but got float"):
+        inspect.unwrap(frequency)(9.81, 1.0)
+
+
+@pytest.mark.parametrize("half", ["float16", "bfloat16"])
+def test_half_precision_rounds_float32(half):
+    v0 = jnp.asarray([0.5, 1.0, 3.0], half)
+    wide = v0.astype(jnp.float32)
+    assert frequency(Pendulum(), v0).dtype == half
+    assert (frequency(Pendulum(), v0) == frequency(Pendulum(), wide).astype(half)).all()
+    run = simulate(Pendulum(), jnp.ones((), half), v0)
+    assert run.theta.dtype == half
+    assert jnp.isfinite(run.theta).all()
 
 
 def test_energy_keeps_the_digits_of_small_angles():

@@ -13,21 +13,29 @@ from ._error import UserError
 def output_folder(out: Path) -> Iterator[Path]:
     """A scratch folder whose files move to `out` when the block ends without an error.
 
-    Files already in `out` are replaced only then, and only those of the same name.
+    The scratch folder lies in `out`, on the same disk; if `out` is new, it is gone
+    again after an error.  Files already there are replaced only at the end, and only
+    those of the same name.
     """
     try:
-        if out.exists() and not out.is_dir():
-            raise UserError(f"{out}: expected a folder for the output, but it is a file")
-        out.absolute().parent.mkdir(parents=True, exist_ok=True)
-        scratch = Path(tempfile.mkdtemp(prefix=f".{out.name}-", dir=out.absolute().parent))
+        new = not out.exists()
+        out.mkdir(parents=True, exist_ok=True)
+        scratch = Path(tempfile.mkdtemp(prefix=".writing-", dir=out))
         try:
             yield scratch
-            out.mkdir(exist_ok=True)
-            for file in sorted(scratch.iterdir()):
+            files = sorted(scratch.iterdir())
+            for file in files:
+                if (out / file.name).is_dir():
+                    raise UserError(f"{out / file.name}: expected no folder in place of a file")
+            for file in files:
                 file.replace(out / file.name)
-        finally:
-            shutil.rmtree(scratch, ignore_errors=True)
+        except BaseException:
+            shutil.rmtree(out if new else scratch, ignore_errors=True)
+            raise
+        scratch.rmdir()
+    except BrokenPipeError:  # of the standard output, not of a file
+        raise
+    except FileExistsError:
+        raise UserError(f"{out}: expected a folder for the output, but it is a file") from None
     except OSError as error:
-        raise UserError(
-            f"{error.filename or out}: {(error.strerror or str(error)).lower()}"
-        ) from None
+        raise UserError(f"--out {out}: {(error.strerror or str(error)).lower()}") from None

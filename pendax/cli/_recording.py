@@ -1,4 +1,4 @@
-"""A recorded swing from a CSV file."""
+"""A recorded swing from a CSV file, and its cycles into one."""
 
 import csv
 import math
@@ -9,10 +9,11 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..fit import Cycles
 from ._error import UserError
 
 _TIME = re.compile(r"(t|time)(_.*)?$", re.IGNORECASE)
-_ANGLE = re.compile(r"(theta|angle).*_(deg|rad)$", re.IGNORECASE)
+_ANGLE = re.compile(r"(theta|angle).*", re.IGNORECASE)
 _UNITS = {"rad": 1.0, "deg": math.pi / 180}
 
 
@@ -48,7 +49,7 @@ def read_recording(
     unit = unit or next((u for u in _UNITS if header[j].lower().endswith("_" + u)), None)
     if unit is None:
         raise UserError(
-            f"{path}: expected column {header[j]} to end in _deg or _rad, or --unit deg|rad"
+            f"{path}: expected column {header[j]} to end in _deg or _rad, or --unit deg or rad"
         )
 
     ts, theta, last = [], [], -math.inf
@@ -111,3 +112,9 @@ def _number(path: Path, line: int, header: list[str], row: list[str], column: in
             f"{path}, line {line}: expected a number in column {header[column]}, but got {text!r}"
         )
     return value
+
+
+def write_cycles(cycles: Cycles, path: Path) -> None:
+    """One row a cycle: times in the unit of the recording, angles in rad."""
+    names = ("start", "amplitude_rad", "period", "amplitude_error_rad", "period_error")
+    np.savetxt(path, np.column_stack(cycles), "%.17g", ",", header=",".join(names), comments="")

@@ -22,7 +22,7 @@ def law_report(law: CriticalLaw, epsilon: float, low: float, high: float) -> str
     root = math.sqrt(epsilon)
     scale = 4 * math.sqrt(root)
     lines = [
-        f"\ncritical law ω = A / ln(B/√t), t = |v0 − 2√ε|, fitted on {low:g} ≤ t ≤ {high:g} rad/s",
+        f"\ncritical law ω = A / ln(B/√t), t = |v0 − 2√ε|, fitted on {low:g} ≤ t/√ε ≤ {high:g}",
         f"{'':9}{'A fitted':>15}{'A theory':>15}{'A/theory−1':>12}"
         f"{'B fitted':>15}{'B theory':>15}{'B/theory−1':>12}{'residual':>10}{'points':>8}",
         _side("below", law.lower, math.pi * root / 2, scale),
@@ -36,8 +36,8 @@ def law_report(law: CriticalLaw, epsilon: float, low: float, high: float) -> str
 def _side(name: str, side: CriticalSide, amplitude: float, scale: float) -> str:
     a, b = float(side.amplitude), float(side.scale)
     return (
-        f"{name:9}{a:15.9f}{amplitude:15.9f}{a / amplitude - 1:12.1e}"
-        f"{b:15.9f}{scale:15.9f}{b / scale - 1:12.1e}"
+        f"{name:9}{a:15.10g}{amplitude:15.10g}{a / amplitude - 1:12.1e}"
+        f"{b:15.10g}{scale:15.10g}{b / scale - 1:12.1e}"
         f"{float(side.residual):10.1e}{int(side.count):8d}"
     )
 
@@ -57,7 +57,7 @@ def _deviations(epsilon: float) -> list[str]:
     ]
     columns = (np.asarray(x).tolist() for x in (t, low, high, high / low, *off))
     return lines + [
-        f"t ={at:7.1e}{below:15.10f}{above:15.10f}{ratio:13.9f}{a:16.1e}{b:10.1e}{c:13.1e}{d:10.1e}"
+        f"t ={at:7.1e}{below:15.10g}{above:15.10g}{ratio:13.9f}{a:16.1e}{b:10.1e}{c:13.1e}{d:10.1e}"
         for at, below, above, ratio, a, b, c, d in zip(*columns, strict=True)
     ]
 

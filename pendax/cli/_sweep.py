@@ -7,12 +7,18 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import numpy as np
+
 from ._error import UserError
+from ._output import output_folder
+from ._recording import write_cycles
 
 if TYPE_CHECKING:
     from .._critical import CriticalLaw
     from .._sweep import Sweep
     from ..fit import Cycles, Fit
+
+    Measured = tuple[Cycles, Fit, str] | None
 
 SUMMARY = "ω(v0) across the separatrix, its critical law, and a measured swing"
 DESCRIPTION = """\
@@ -31,7 +37,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--count", type=_count, default=200_000, metavar="N",
         help="initial velocities, before equal ones are dropped (default 200000)")  # fmt: skip
     add("--window", type=_positive, nargs=2, default=(1e-12, 1e-6), metavar=("LOW", "HIGH"),
-        help="distances t, rad/s, on which the law is fitted (default 1e-12 1e-6)")  # fmt: skip
+        help="distances t/√ε on which the law is fitted (default 1e-12 1e-6)")  # fmt: skip
     add("--out", type=Path, default=Path("pendax-out"), metavar="FOLDER",
         help="where the files go (default pendax-out)")  # fmt: skip
     add("--format", choices=("csv", "npz"), default="csv",
@@ -45,7 +51,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--time", metavar="NAME", help="time column (default: t…, time…)")
     add("--angle", metavar="NAME", help="angle column (default: theta…_deg, theta…_rad)")
     add("--unit", choices=("deg", "rad"), help="of the angle (default: its name's ending)")
-    add("--start", type=_number, default=-math.inf, metavar="T",
+    add("--start", type=_finite, default=-math.inf, metavar="T",
         help="use the recording from this time on, in its unit")  # fmt: skip
 
 
@@ -54,33 +60,49 @@ def run(arguments: argparse.Namespace) -> None:
     import jax
 
     jax.config.update("jax_enable_x64", True)
-    low, high = arguments.window
-    if not low < high:
-        raise UserError(f"--window: expected LOW < HIGH, but got {low:g} {high:g}")
-    say = (lambda *lines, **how: None) if arguments.quiet else print
-
-    measured = _measure(arguments) if arguments.data else None
-    swept = _sweep(arguments, say)
-    law = _fit(swept, low, high)
-
-    # Drawing comes last: matplotlib takes longer to load than all of the above.
-    from .. import figures
-    from .._sweep import write
-    from ._output import output_folder
     from ._report import law_report, swing_report
 
-    say(law_report(law, swept.epsilon, low, high))
-    if measured:
-        say(swing_report(arguments.data, *measured))
-    names = [f"sweep.{arguments.format}", *(f"figure-{n}.png" for n in figures.CRITICAL)]
+    say = (lambda *lines, **how: None) if arguments.quiet else print
     with output_folder(arguments.out) as folder:
-        write(swept, folder / names[0])
-        for name, draw in zip(names[1:], figures.CRITICAL.values(), strict=True):
-            draw(swept, measured[:2] if measured else None).savefig(folder / name)
+        measured = _measure(arguments)
+        swept = _sweep(arguments, say)
+        law = _fit(swept, *arguments.window)
+        say(law_report(law, swept.epsilon, *arguments.window))
+        if measured:
+            say(swing_report(arguments.data, *measured))
+        names = _write(swept, measured, folder, arguments.format)
     say("\nwrote", *(arguments.out / name for name in names), sep="\n  ")
 
 
-def _measure(arguments: argparse.Namespace) -> "tuple[Cycles, Fit, str]":
+def _write(swept: "Sweep", measured: "Measured", folder: Path, form: str) -> list[str]:
+    """The tables and the figures; their names."""
+    # Drawing comes last: matplotlib takes longer to load than all that went before.
+    from .. import figures
+    from .._sweep import write
+
+    names = [f"sweep.{form}"]
+    write(swept, folder / names[0])
+    if measured:
+        names.append("cycles.csv")
+        write_cycles(measured[0], folder / names[-1])
+    for number, draw in figures.CRITICAL.items():
+        names.append(f"figure-{number}.png")
+        draw(swept, measured[:2] if measured else None).savefig(folder / names[-1])
+    return names
+
+
+def _measure(arguments: argparse.Namespace) -> "Measured":
+    if arguments.data is None:
+        for option, unset in (
+            ("time", None),
+            ("angle", None),
+            ("unit", None),
+            ("start", -math.inf),
+        ):
+            if getattr(arguments, option) != unset:
+                raise UserError(f"--{option}: expected --data FILE.csv with it")
+        return None
+    from .. import Result
     from ..fit import cycles, fit_frequency
     from ..fit._frequency import period_sigma
     from ._recording import read_recording
@@ -89,14 +111,30 @@ def _measure(arguments: argparse.Namespace) -> "tuple[Cycles, Fit, str]":
     recording = read_recording(
         path, arguments.time, arguments.angle, arguments.unit, arguments.start
     )
-    found = cycles(recording.ts, recording.theta)
+    ts, theta = recording.ts, recording.theta
+    if ts.size == 0:
+        begin = "the start" if arguments.start == -math.inf else f"{arguments.start:g}"
+        raise UserError(f"{path}: expected a recording from {begin} on, but it has no rows")
+    jump = np.argmax(np.abs(np.diff(theta, prepend=theta[0])))
+    if abs(theta[jump] - theta[jump - 1]) > math.pi:
+        raise UserError(
+            f"{path}: expected an angle without jumps, but it jumps by "
+            f"{math.degrees(theta[jump] - theta[jump - 1]):.0f}° before {ts[jump]:g}; unwrap it, "
+            "or give its --unit"
+        )
+    if np.ptp(theta) >= 2 * math.pi:
+        raise UserError(
+            f"{path}: expected swings below 180°, but the pendulum turns over; "
+            "--start takes the part after that"
+        )
+    found = cycles(ts, theta)
     if found.period.size < 2:
         raise UserError(
             f"{path}: expected a swing of two or more cycles, but found {found.period.size}"
         )
-    if not (found.amplitude < math.pi).all():
-        raise UserError(f"{path}: expected swings below 180°, but the recording turns over")
     fit = fit_frequency(found.amplitude, found.period, sigma=period_sigma(found))
+    if not fit.result == Result.successful:
+        raise UserError(f"{path}: the cycles are out of range for a fit")
     return found, fit, recording.time_unit
 
 
@@ -121,16 +159,20 @@ def _sweep(arguments: argparse.Namespace, say: Callable) -> "Sweep":
 def _fit(swept: "Sweep", low: float, high: float) -> "CriticalLaw":
     from .. import Result, fit_critical_law
 
-    window = (swept.t >= low) & (swept.t <= high)
+    if not low < high:
+        raise UserError(f"--window: expected LOW < HIGH, but got {low:g} {high:g}")
+    x = swept.t / math.sqrt(swept.epsilon)
+    window = (x >= low) & (x <= high)
     below = int((window & swept.below).sum())
-    if min(below, int(window.sum()) - below) < 2:
+    above = int(window.sum()) - below
+    if min(below, above) < 2:
         raise UserError(
             f"--window: expected two or more velocities of the sweep on each side, but "
-            f"{low:g} … {high:g} rad/s holds {below} below and {int(window.sum()) - below} above"
+            f"{low:g} … {high:g} √ε holds {below} below and {above} above"
         )
     law = fit_critical_law(swept.v0[window], swept.omega[window], swept.epsilon)
     if not law.result == Result.successful:
-        raise UserError(f"--window: the law could not be fitted on {low:g} … {high:g} rad/s")
+        raise UserError(f"--window: the law could not be fitted on {low:g} … {high:g} √ε")
     return law
 
 
@@ -148,6 +190,13 @@ def _count(text: str) -> int:
         value = 0
     if value < 100:
         raise argparse.ArgumentTypeError(f"expected a whole number from 100 on, but got {text}")
+    return value
+
+
+def _finite(text: str) -> float:
+    value = _number(text)
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"expected a finite number, but got {text}")
     return value
 
 

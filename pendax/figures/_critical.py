@@ -5,6 +5,7 @@ a matplotlib `Figure`.
 """
 
 from collections.abc import Callable
+from functools import wraps
 
 import matplotlib as mpl
 import numpy as np
@@ -26,6 +27,7 @@ Measured = tuple[Cycles, Fit] | None
 
 
 def _styled(draw: Callable[[Sweep, Measured], Figure]) -> Callable[[Sweep, Measured], Figure]:
+    @wraps(draw)
     def styled(swept: Sweep, measured: Measured = None) -> Figure:
         with mpl.rc_context(STYLE):
             return draw(swept, measured)
@@ -47,7 +49,11 @@ def figure_8(swept: Sweep, measured: Measured) -> Figure:
     axes = figure.subplots(1, 3)
     for ax, letter, low in zip(axes, "abc", (0.0, 1.9, 1.999), strict=True):
         frequency_curve(ax, *_window(swept, low, 2.0), swept.epsilon)
-        ax.set(title=f"8({letter})", ylim=(0, None), xticks=np.linspace(low, 2.0, 3))
+        ax.set(
+            title=f"Figure 8({letter}): below the separatrix",
+            ylim=(0, None),
+            xticks=np.linspace(low, 2.0, 3 if letter == "c" else 5),
+        )
         ax.ticklabel_format(useOffset=False)
     if measured:
         _points(axes[0], measured)
@@ -60,7 +66,7 @@ def figure_11(swept: Sweep, measured: Measured) -> Figure:
     """ω(v0) above the separatrix."""
     figure = new_figure(6.5, 4.5)
     ax = frequency_curve(figure.subplots(), *_window(swept, 2.0, 4.0), swept.epsilon)
-    ax.set(ylim=(0, None), title="11: the pendulum turns over")
+    ax.set(ylim=(0, None), title="Figure 11: above the separatrix")
     ax.legend(loc="lower right")
     return figure
 
@@ -72,7 +78,7 @@ def figure_13(swept: Sweep, measured: Measured) -> Figure:
     ax = frequency_curve(figure.subplots(), swept.v0, swept.omega, swept.epsilon)
     if measured:
         _points(ax, measured)
-    ax.set(xlim=(0, 4), ylim=(0, None), title="13: frequency across the separatrix")
+    ax.set(xlim=(0, 4), ylim=(0, None), title="Figure 13: across the separatrix")
     ax.legend(loc="upper left")
     return figure
 
@@ -92,13 +98,17 @@ def _points(ax, measured: tuple[Cycles, Fit]) -> None:
 def _approach(number: int, side: Side) -> Callable[[Sweep, Measured], Figure]:
     @_styled
     def draw(swept: Sweep, measured: Measured) -> Figure:
+        """ω over the distance from the separatrix, and how far the law is from it."""
         root = np.sqrt(swept.epsilon)
         mask = (swept.below == (side == "lower")) & (swept.t > 0) & (swept.t < root)
         points = swept.t[mask], swept.omega[mask]
         figure = new_figure(11.0, 4.5)
         left, right = figure.subplots(1, 2)
-        critical_approach(left, *points, side, swept.epsilon).set_title(f"{number}: ω → 0")
-        law_deviation(right, *points, side, swept.epsilon).set_title("where the law holds")
+        critical_approach(left, *points, side, swept.epsilon).set_title(
+            f"Figure {number}: ω → 0 at the separatrix"
+        )
+        law_deviation(right, *points, side, swept.epsilon).set_title("Where the law holds")
+        right.legend(loc="upper left")
         return figure
 
     return draw

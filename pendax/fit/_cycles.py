@@ -9,7 +9,7 @@ from numpy.polynomial import Polynomial
 
 # Fractions of the swing's amplitude, measured on encoder and video recordings:
 NEAR_LEVEL = 0.4  # around a passage, where a cubic gives its time to 3e-6 of the period
-NEAR_PEAK = 0.92  # around a turning point, where a quartic is good to 1e-5 of θ_max (2.5 rad)
+NEAR_PEAK = 0.92  # around a turning point, where an even polynomial is good to 1e-5 of θ_max
 SMALLEST = 0.02  # of the largest swing: a swing below it is rest
 ENOUGH = 5  # samples for a fit; on coarse recordings the neighbourhood grows to hold them
 
@@ -45,14 +45,14 @@ def cycles(ts: ArrayLike, theta: ArrayLike) -> Cycles:
 
     **Returns:** [`Cycles`][], empty if the recording holds none.  Passages are located
     by a least-squares cubic through the samples within 0.4 of the amplitude, turning
-    points by a quartic through those above 0.92 of it; the errors are those of these
-    fits.  Above 3 rad turning points are too flat for a quartic: 5e-4 at 3.1 rad.
+    points by a polynomial of degree 4 to 8 through those above 0.92 of it; the errors
+    are those of these fits.
 
     **Raises:** `ValueError` for times that do not increase, for values that are not
     finite, or for shapes other than one axis of equal length.
     """
     ts, theta = _checked(ts, theta)
-    if ts.size < 4:
+    if ts.size < 4 or np.ptp(theta) == 0:
         return Cycles(*np.empty((5, 0)))
     swings, level = _swings(theta)
     step = np.median(np.diff(ts))
@@ -155,7 +155,7 @@ def _crossing(
 
 
 def _peak(ts: np.ndarray, y: np.ndarray, swing: slice) -> _Estimate:
-    """The turning point of a swing: the extremum of θ as a quartic in t."""
+    """The turning point of a swing: the extremum of θ as a polynomial in t."""
     t, part = ts[swing], y[swing]
     highest = int(np.argmax(np.abs(part)))
     near = np.abs(part) > NEAR_PEAK * abs(part[highest])
@@ -163,11 +163,13 @@ def _peak(ts: np.ndarray, y: np.ndarray, swing: slice) -> _Estimate:
     t, x, here = t[near], part[near], t[highest]
     if x.size < 3:
         return _Estimate(float(part[highest]), float(abs(part[highest])))
-    roots = Polynomial.fit(t, x, _degree(x.size, 4)).deriv().roots()
+    # Near π the top is as flat as a cosh: more samples carry a higher degree.
+    most = 4 if x.size < 20 else 6 if x.size < 40 else 8
+    roots = Polynomial.fit(t, x, _degree(x.size, most)).deriv().roots()
     real = roots[np.isreal(roots)].real
     inside = real[(real >= t[0]) & (real <= t[-1])]
     top = inside[np.argmin(np.abs(inside - here))] if inside.size else here
-    return _polynomial(t, x, 4, float(top))
+    return _polynomial(t, x, most, float(top))
 
 
 def _degree(samples: int, most: int) -> int:

@@ -50,7 +50,14 @@ def law_deviation(
     for order, style in ((0, "--"), (1, ":")):
         off = np.asarray(critical_law(x * root, side, epsilon, order)) / root / y - 1
         visible = np.abs(off) >= 4 * np.finfo(y.dtype).eps
-        ax.plot(x[visible], np.abs(off[visible]), style, color=COLOURS["next" if order else "law"])
+        label = "next order" if order else "leading law"
+        ax.plot(
+            x[visible],
+            np.abs(off[visible]),
+            style,
+            label=label,
+            color=COLOURS["next" if order else "law"],
+        )
     ax.set_xscale("log")
     ax.set_yscale("log")
     ax.set(xlabel=rf"${distance}$, in $\sqrt{{\varepsilon}}$", ylabel="|law / exact − 1|")

@@ -20,9 +20,9 @@ def frequency_curve(
     """
     root = np.sqrt(epsilon)
     x, y = np.asarray(v0) / root, np.asarray(omega) / root
-    sides = (("below", "swings", x <= 2), ("above", "turns over", x > 2))
+    sides = (("below", "swings", x <= 2), ("above", "turns over", x >= 2))
     for side, label, mask in sides:
-        if mask.any():
+        if mask.sum() > 1:
             drawn = _thinned(x[mask], y[mask], most)
             ax.plot(x[mask][drawn], y[mask][drawn], color=COLOURS[side], label=label)
     if x.min() <= 2 <= x.max():

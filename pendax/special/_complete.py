@@ -4,9 +4,8 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from .._arrays import common
+from .._arrays import common, widened
 from ._landen import Ladder, ladder, log_nome, nome16
-from ._precision import widened
 
 
 def ellipk(m: ArrayLike) -> Float[Array, "..."]:

@@ -7,10 +7,9 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, ArrayLike, Bool, Float
 
-from .._arrays import common
+from .._arrays import common, widened
 from ._elementary import angle, decay, sin_cos
 from ._landen import Ladder, ladder, log_nome, nome16
-from ._precision import widened
 
 FloatArray = Float[Array, "..."]
 
