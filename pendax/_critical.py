@@ -145,7 +145,7 @@ def _fit_side(t, omega, a, b, used) -> tuple[CriticalSide, Array]:
 
     # In the unknowns 1/A and (ln B + mean)/A the law's 1/ω is linear, so the iteration
     # lands in one step.  In ln A and ln B it creeps; Levenberg-Marquardt, at the bottom,
-    may reject every further step and never call itself converged.
+    # may reject every further step and never call itself converged.
     count = jnp.sum(used)
     points = count.astype(t.dtype)
     log = -0.5 * jnp.log(t)
