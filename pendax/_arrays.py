@@ -78,14 +78,16 @@ def require(name: str, x: object, holds: str, test) -> None:
         raise ValueError(f"Argument `{name}` must be {holds}, but got {values[wrong].flat[0]}.")
 
 
-def two_product(
-    a: Float[Array, "..."], b: Float[Array, "..."]
-) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
-    """a b as head + tail, exact where neither over- nor underflows (Dekker 1971).
+def difference_of_products(
+    a: Float[Array, "..."], b: Float[Array, "..."], c: Float[Array, "..."], d: Float[Array, "..."]
+) -> Float[Array, "..."]:
+    """a b − c d to 2 eps of itself plus 4 eps² of a b, where nothing over- or underflows.
 
-    The halves come from `lax.reduce_precision`, not from Veltkamp's c - (c - a): all
-    partial products are then exact, and it makes no difference which of them XLA
-    fuses into multiply-adds.  Not to be differentiated.
+    Every factor is cut into two halves by `lax.reduce_precision`, and every product of
+    halves is exact: it makes no difference which of them the compiler fuses into
+    multiply-adds.  The rejected form, Veltkamp and Dekker's rounded product with its
+    error, subtracts the error twice where a compiler contracts the subtraction of the
+    product.  Not to be differentiated.
     """
     digits = jnp.finfo(a.dtype).nmant // 2 - (a.dtype == jnp.float64)
 
@@ -93,7 +95,18 @@ def two_product(
         high = lax.reduce_precision(x, jnp.finfo(x.dtype).nexp, digits)
         return high, x - high
 
-    head = a * b
-    (a1, a2), (b1, b2) = halves(a), halves(b)
-    tail = (((a1 * b1 - head) + a1 * b2) + a2 * b1) + a2 * b2
-    return head, tail
+    (a1, a2), (b1, b2), (c1, c2), (d1, d2) = map(halves, (a, b, c, d))
+    total, rest = a1 * b1, jnp.zeros_like(a)
+    for term in (-c1 * d1, a1 * b2, -c1 * d2, a2 * b1, -c2 * d1, a2 * b2, -c2 * d2):
+        total, error = _two_sum(total, term)
+        rest = rest + error
+    return total + rest
+
+
+def _two_sum(
+    a: Float[Array, "..."], b: Float[Array, "..."]
+) -> tuple[Float[Array, "..."], Float[Array, "..."]]:
+    """a + b as rounded sum and exact error (Knuth); additions alone, so safe from fusing."""
+    total = a + b
+    part = total - a
+    return total, (a - (total - part)) + (b - part)

@@ -17,7 +17,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import common, require, two_product
+from ._arrays import common, difference_of_products, require
 from ._results import Result
 from .special._agm import agm
 
@@ -102,8 +102,7 @@ def fit_critical_law(
 
 def distance(v0: FloatArray, epsilon: FloatArray) -> tuple[FloatArray, Array]:
     """(t, below): t = ||v0| − 2√ε| to the last digit, for the floats as given."""
-    square, tail = two_product(v0, v0)
-    gap = (4 * epsilon - square) - tail
+    gap = difference_of_products(4 * epsilon, jnp.ones_like(v0), v0, v0)
     return jnp.abs(gap) / (jnp.abs(v0) + 2 * jnp.sqrt(epsilon)), gap > 0
 
 

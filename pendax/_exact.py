@@ -16,7 +16,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import common, two_product, widened
+from ._arrays import common, difference_of_products, widened
 from ._pendulum import Pendulum, require_free
 from .special import ellipj
 from .special._agm import agm
@@ -105,10 +105,8 @@ def _gap(four: FloatArray, v0: FloatArray, sin: FloatArray, cos: FloatArray) -> 
     (2√ε − v0)(2√ε + v0) would put the separatrix one float off.  cos² is used where it
     is the smaller of the two, else 1 − sin²: each loses nothing near its own zero.
     """
-    square, square_tail = two_product(v0, v0)
-    low, low_tail = two_product(four * cos, cos)
-    bottom = ((four - square) - square_tail) - four * sin * sin
-    top = (low - square) + (low_tail - square_tail)
+    bottom = difference_of_products(four, jnp.ones_like(v0), v0, v0) - four * sin * sin
+    top = difference_of_products(four * cos, cos, v0, v0)
     return jnp.where(cos * cos < sin * sin, top, bottom)
 
 

@@ -5,19 +5,25 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from pendax._arrays import common, concrete, require, two_product
+from pendax._arrays import common, concrete, difference_of_products, require
 
 
 @pytest.mark.parametrize("compiled", [False, True])
-def test_product_is_error_free(dtype, compiled):
+def test_difference_of_products_keeps_its_digits(dtype, compiled):
+    """Products that agree to the last bit or two, and products that do not."""
     rng = np.random.default_rng(0)
-    a, b = (rng.uniform(-1, 1, 2000) * 2.0 ** rng.integers(-20, 20, 2000) for _ in range(2))
-    a, b = a.astype(dtype), b.astype(dtype)
-    head, tail = (jax.jit(two_product) if compiled else two_product)(jnp.asarray(a), jnp.asarray(b))
-    assert head.dtype == tail.dtype == dtype
-    for x, y, h, t in zip(*(np.asarray(z, float) for z in (a, b, head, tail)), strict=True):
-        assert Fraction(x) * Fraction(y) == Fraction(h) + Fraction(t)
-        assert abs(t) <= abs(h) * np.finfo(dtype).eps / 2
+    a, b = rng.uniform(1, 2, (2, 3000)).astype(dtype)
+    c = (a * (1 + 10 ** rng.uniform(-9, 0, 3000))).astype(dtype)
+    d = (a.astype(float) * b / c * (1 + rng.integers(-3, 4, 3000) * jnp.finfo(dtype).eps)).astype(
+        dtype
+    )
+    function = jax.jit(difference_of_products) if compiled else difference_of_products
+    got = np.asarray(function(*map(jnp.asarray, (a, b, c, d))))
+    assert got.dtype == dtype
+    for w, x, y, z, g in zip(*(np.asarray(v, float) for v in (a, b, c, d, got)), strict=True):
+        true = Fraction(w) * Fraction(x) - Fraction(y) * Fraction(z)
+        eps = Fraction(float(np.finfo(dtype).eps))
+        assert abs(Fraction(g) - true) <= 2 * eps * abs(true) + 4 * eps**2 * Fraction(w * x)
 
 
 def test_common_broadcasts_to_one_dtype(dtype):

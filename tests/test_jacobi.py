@@ -155,6 +155,27 @@ def test_second_derivatives(mode, u, m):
         np.testing.assert_allclose(hessian[:3, i, j], true, rtol=relative, atol=absolute + 1e-20)
 
 
+@pytest.mark.parametrize("mode", [jax.jacfwd, jax.jacrev, jax.hessian])
+@pytest.mark.parametrize("compiled", [False, True])
+def test_derivatives_at_whole_half_periods(mode, compiled):
+    """Where the reduced argument is rounding noise its sign is, too; no derivative hangs on it."""
+    rng = np.random.default_rng(11)
+    m = np.concatenate([rng.uniform(-3, 0.99, 30), rng.uniform(1.01, 40, 10)])
+    u = np.array([float(2 * references.quarter_period(m=x)) for x in m]) * rng.integers(-6, 7, 40)
+
+    def functions(u, m):
+        return jnp.stack(ellipj(u, m)[:3])
+
+    sn, cn, dn = functions(u, m)
+    derivative = jax.vmap(mode(functions))
+    got = (jax.jit(derivative) if compiled else derivative)(u, m)
+    if mode is jax.hessian:
+        true = [-sn * (dn**2 + m * cn**2), -cn * (dn**2 - m * sn**2), -m * dn * (cn**2 - sn**2)]
+    else:
+        true = [cn * dn, -sn * dn, -m * sn * cn]
+    np.testing.assert_allclose(got, jnp.stack(true, 1), rtol=1e-9, atol=1e-9)
+
+
 def test_period_at_the_separatrix_is_differentiable():
     """m1 tiny and u past the half period: the derivative in m1 is that of the period."""
     u, m1 = 100.0, 1e-30

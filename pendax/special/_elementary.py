@@ -73,18 +73,23 @@ def _sin_cos_jvp(primals, tangents):
 
 
 @jax.custom_jvp
-def decay(w: FloatArray) -> tuple[FloatArray, FloatArray]:
-    """(e, (1 − e²)/2), e = exp(−w), for w >= 0; (1 − e²)/2 keeps the digits of a small w."""
-    e = jnp.exp(-w)
+def sinh_cosh(w: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """(e sinh w, e cosh w, e), e = exp(−|w|) a mere unit: a constant to derivatives.
+
+    e sinh w keeps the digits of a small w.
+    """
+    size = jnp.abs(w)
+    e = jnp.exp(-size)
     x = w * w
-    small = e * (w + w * (x * _polynomial(x, _SINH)))
-    return e, jnp.where(w < 0.36, small, 0.5 - 0.5 * (e * e))
+    near = e * (w + w * (x * _polynomial(x, _SINH)))
+    far = 0.5 - 0.5 * (e * e)
+    return jnp.where(size < 0.36, near, jnp.where(w < 0, -far, far)), 0.5 + 0.5 * (e * e), e
 
 
-@decay.defjvp
-def _decay_jvp(primals, tangents):
-    e, half = decay(*primals)
-    return (e, half), (-e * tangents[0], e * e * tangents[0])
+@sinh_cosh.defjvp
+def _sinh_cosh_jvp(primals, tangents):
+    sinh, cosh, e = sinh_cosh(*primals)
+    return (sinh, cosh, e), (cosh * tangents[0], sinh * tangents[0], jnp.zeros_like(e))
 
 
 @jax.custom_jvp
@@ -115,12 +120,14 @@ def _log_jvp(primals, tangents):
 
 @jax.custom_jvp
 def angle(sin: FloatArray, cos: FloatArray) -> FloatArray:
-    """The angle in [0, π/2] of a sine and a cosine, both >= 0: twice the arctangent of
-    the smaller of tan(φ/2) and tan((π/2 − φ)/2), which is at most √2 − 1."""
-    x = jnp.minimum(sin, cos) / (1 + jnp.maximum(sin, cos))
+    """The angle in [−π/2, π/2] of a sine and a cosine >= 0: twice the arctangent of the
+    smaller of tan(φ/2) and tan((π/2 − φ)/2), which is at most √2 − 1."""
+    size = jnp.abs(sin)
+    x = jnp.minimum(size, cos) / (1 + jnp.maximum(size, cos))
     y = x * x
     near = 2 * x + x * (y * _polynomial(y, _ANGLE))
-    return jnp.where(sin > cos, 0.5 * jnp.pi - near, near)
+    phi = jnp.where(size > cos, 0.5 * jnp.pi - near, near)
+    return jnp.where(sin < 0, -phi, phi)
 
 
 @angle.defjvp

@@ -8,7 +8,7 @@ from jax import lax
 from jaxtyping import Array, ArrayLike, Bool, Float
 
 from .._arrays import common, widened
-from ._elementary import angle, decay, sin_cos
+from ._elementary import angle, sin_cos, sinh_cosh
 from ._landen import Ladder, ladder, log_nome, nome16
 
 FloatArray = Float[Array, "..."]
@@ -99,22 +99,21 @@ def _jacobi(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, .
     parameter = _classify(m, m1)
     rungs = ladder(parameter.p)
 
-    # |u| by its sign: jnp.abs has no derivative at 0.
-    sign = jnp.where(u < 0, -1, 1).astype(u.dtype)
-    w = sign * u * (parameter.scale / rungs.product)
+    # No sign is taken off w and put on again: XLA may compute w once with and once
+    # without a fused multiply-add, and beside a whole half period the two signs differ.
+    w = u * (parameter.scale / rungs.product)
     w, turns = _reduce(w, nome16(rungs), parameter.ascends)
-    flip = jnp.where(w < 0, -1, 1).astype(u.dtype)
-    sn, cn, dn = _first_quarter(flip * w, parameter, rungs)
-    ph = flip * angle(sn, cn)
+    sn, cn, dn = _around_zero(w, parameter, rungs)
+    ph = angle(sn, cn)
 
     # A half period on, m <= 1 has turned over (sn, cn) and m > 1 swung back (sn, dn).
     swings = m1 < 0
     parity = 1 - 2 * (turns - 2 * jnp.floor(0.5 * turns))
     return (
-        sign * parity * flip * sn,
+        parity * sn,
         jnp.where(swings, cn, parity * cn),
         jnp.where(swings, parity * dn, dn),
-        sign * jnp.where(swings, parity * ph, ph + turns * jnp.pi),
+        jnp.where(swings, parity * ph, ph + turns * jnp.pi),
     )
 
 
@@ -143,10 +142,10 @@ def _reduce_jvp(primals, tangents):
     return (reduced, turns), (tangents[0] + slope * tangents[1], jnp.zeros_like(turns))
 
 
-def _first_quarter(
+def _around_zero(
     w: FloatArray, parameter: _Parameter, rungs: Ladder
 ) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """sn, cn, dn for w >= 0 up to the quarter period.
+    """sn, cn, dn for w from one quarter period below zero to one above.
 
     Gauss's transformation (DLMF 22.7) in homogeneous coordinates, sn : cn : dn : 1
     = s : c : d : h, is a few products a step and no division:
@@ -156,13 +155,13 @@ def _first_quarter(
     from (sin, cos, 1, 1).  Jacobi's imaginary transformation turns the same step,
     with -l for l, into the one that ascends from (sinh, cosh, 1, 1), where the
     homogeneous coordinates are those of sc, nc, dc.  There s and c are kept divided
-    by y = e^w, so that no step over- or underflows, for m1 of any size.
+    by y = e^|w|, so that no step over- or underflows, for m1 of any size; y is a
+    common factor, a constant as far as derivatives go.
     """
     ascends = parameter.ascends
     sin, cos = sin_cos(jnp.where(ascends, 0, w))
-    e, half = decay(jnp.where(ascends, w, 0))
-    s = jnp.where(ascends, half, sin)
-    c = jnp.where(ascends, 1 - half, cos)
+    sinh, cosh, e = sinh_cosh(jnp.where(ascends, w, 0))
+    s, c = jnp.where(ascends, sinh, sin), jnp.where(ascends, cosh, cos)
     y = 1 / jnp.maximum(e, jnp.finfo(w.dtype).tiny)
     signed_y = jnp.where(ascends, -y, 1)
 
