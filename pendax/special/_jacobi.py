@@ -72,7 +72,6 @@ class _Parameter(NamedTuple):
     ascends: Bool[Array, "..."]
     p: FloatArray
     scale: FloatArray
-    inverse_scale: FloatArray
 
 
 def _classify(m: FloatArray, m1: FloatArray) -> _Parameter:
@@ -81,11 +80,9 @@ def _classify(m: FloatArray, m1: FloatArray) -> _Parameter:
     circular = (m <= 0.5) & ~negative
     hyperbolic = (m > 0.5) & ~reciprocal
     divisor = jnp.where(reciprocal, m, jnp.where(negative, m1, 1))
-    inverse = 1 / divisor
-    p = jnp.where(circular, m, jnp.where(hyperbolic, m1, inverse))
+    p = jnp.where(circular, m, jnp.where(hyperbolic, m1, 1 / divisor))
     ascends = hyperbolic | negative
-    scale = jnp.sqrt(divisor)
-    return _Parameter(circular, reciprocal, negative, ascends, p, scale, scale * inverse)
+    return _Parameter(circular, reciprocal, negative, ascends, p, jnp.sqrt(divisor))
 
 
 @jax.jit
