@@ -15,7 +15,14 @@ NUMBERS = (jax.Array, np.ndarray, np.generic, bool, int, float, complex)
 
 
 def common(**arguments: Any) -> list[Float[Array, "..."]]:
-    """The arguments as real floating arrays of one shape and dtype.
+    """The arguments as real floating arrays of one shape and dtype: `aligned`, broadcast."""
+    arrays = aligned(**arguments)
+    shape = jnp.broadcast_shapes(*(x.shape for x in arrays))
+    return [jnp.broadcast_to(x, shape) for x in arrays]
+
+
+def aligned(**arguments: Any) -> list[Float[Array, "..."]]:
+    """The arguments as real floating arrays of one rank and dtype that broadcast together.
 
     The dtype is `jnp.result_type` of them all, Python scalars and integers weak;
     float16 and bfloat16 stay what they are (see `widened`).
@@ -35,7 +42,7 @@ def common(**arguments: Any) -> list[Float[Array, "..."]]:
     except ValueError:
         shapes = ", ".join(f"`{name}` {jnp.shape(x)}" for name, x in arguments.items())
         raise ValueError(f"Arguments must broadcast together, but got shapes {shapes}.") from None
-    return [jnp.broadcast_to(x, shape) for x in arrays]
+    return [x.reshape((1,) * (len(shape) - x.ndim) + x.shape) for x in arrays]
 
 
 def widened(function: Callable) -> Callable:

@@ -73,23 +73,21 @@ def _sin_cos_jvp(primals, tangents):
 
 
 @jax.custom_jvp
-def sinh_cosh(w: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """(e sinh w, e cosh w, e), e = exp(−|w|) a mere unit: a constant to derivatives.
-
-    e sinh w keeps the digits of a small w.
-    """
+def sinh_cosh(w: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(sinh w, cosh w), with the digits of a small w."""
     size = jnp.abs(w)
-    e = jnp.exp(-size)
+    y = jnp.exp(size)
+    e = 1 / y
     x = w * w
-    near = e * (w + w * (x * _polynomial(x, _SINH)))
-    far = 0.5 - 0.5 * (e * e)
-    return jnp.where(size < 0.36, near, jnp.where(w < 0, -far, far)), 0.5 + 0.5 * (e * e), e
+    near = w + w * (x * _polynomial(x, _SINH))
+    far = 0.5 * (y - e)
+    return jnp.where(size < 0.36, near, jnp.where(w < 0, -far, far)), 0.5 * (y + e)
 
 
 @sinh_cosh.defjvp
 def _sinh_cosh_jvp(primals, tangents):
-    sinh, cosh, e = sinh_cosh(*primals)
-    return (sinh, cosh, e), (cosh * tangents[0], sinh * tangents[0], jnp.zeros_like(e))
+    sinh, cosh = sinh_cosh(*primals)
+    return (sinh, cosh), (cosh * tangents[0], sinh * tangents[0])
 
 
 @jax.custom_jvp

@@ -1,15 +1,19 @@
 """sn, cn, dn and the amplitude, for every real parameter, from one ladder."""
 
-from typing import NamedTuple
+from functools import partial
 
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, ArrayLike, Bool, Float
+from jax.custom_derivatives import SymbolicZero
+from jaxtyping import Array, ArrayLike, Float
 
-from .._arrays import common, widened
-from ._elementary import angle, sin_cos, sinh_cosh
-from ._landen import Ladder, ladder, log_nome, nome16
+from .._arrays import aligned, widened
+from ._cpu import in_blocks, once
+from ._elementary import angle
+from ._kinds import kind, scales
+from ._slope import by_amplitude, slope
+from ._steps import other, reduce, sine_and_partner
 
 FloatArray = Float[Array, "..."]
 
@@ -46,145 +50,147 @@ def ellipj(
             "Arguments `m` and `m1` must be given one without the other, but got "
             + ("neither." if m is None else "both.")
         )
-    if m1 is None:
-        u, m = common(u=u, m=m)
-        return widened(lambda u, m: _jacobi(u, m, 1 - m))(u, m)
-    u, m1 = common(u=u, m1=m1)
-    return widened(lambda u, m1: _jacobi(u, 1 - m1, m1))(u, m1)
+    given = {"u": u, "m": m} if m1 is None else {"u": u, "m1": m1}
+    u, parameter = aligned(**given)
 
+    def functions(u, parameter):
+        pair = (parameter, 1 - parameter) if m1 is None else (1 - parameter, parameter)
+        return jacobi(u, *pair)
 
-class _Parameter(NamedTuple):
-    """m sorted into one of four classes, each with a p in [-1, 1/2].
-
-    class         m            p                  functions of scale * u at p
-    circular      -1 … 1/2     m                  sn, cn, dn
-    hyperbolic    1/2 … 2      m1, either sign    sn, cn, dn
-    reciprocal    above 2      1/m                sn / scale, dn, cn    (DLMF 22.17)
-    negative      below -1     1/m1               sd / scale, cd, nd
-
-    circular and reciprocal descend to sin and cos, hyperbolic and negative ascend
-    to tanh and sech.
-    """
-
-    circular: Bool[Array, "..."]
-    reciprocal: Bool[Array, "..."]
-    negative: Bool[Array, "..."]
-    ascends: Bool[Array, "..."]
-    p: FloatArray
-    scale: FloatArray
-
-
-def _classify(m: FloatArray, m1: FloatArray) -> _Parameter:
-    reciprocal = m > 2
-    negative = ~(m >= -1)  # NaN goes this way too, and stays NaN
-    circular = (m <= 0.5) & ~negative
-    hyperbolic = (m > 0.5) & ~reciprocal
-    divisor = jnp.where(reciprocal, m, jnp.where(negative, m1, 1))
-    p = jnp.where(circular, m, jnp.where(hyperbolic, m1, 1 / divisor))
-    ascends = hyperbolic | negative
-    return _Parameter(circular, reciprocal, negative, ascends, p, jnp.sqrt(divisor))
-
-
-@jax.jit
-def _jacobi(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
-    """(sn, cn, dn, ph) for arguments of one dtype; m + m1 = 1, each as exact as known.
-
-    Every operation is an analytic function of u, m and m1 within its class, and the
-    classes agree where they meet, so derivatives of any order come from
-    differentiating the program; there is no 0/0 at m = 0, at m = 1 or at u = 0.
-    """
-    parameter = _classify(m, m1)
-    rungs = ladder(parameter.p)
-
-    # No sign is taken off w and put on again: XLA may compute w once with and once
-    # without a fused multiply-add, and beside a whole half period the two signs differ.
-    w = u * (parameter.scale / rungs.product)
-    w, turns = _reduce(w, nome16(rungs), parameter.ascends)
-    sn, cn, dn = _around_zero(w, parameter, rungs)
-    ph = angle(sn, cn)
-
-    # A half period on, m <= 1 has turned over (sn, cn) and m > 1 swung back (sn, dn).
-    swings = m1 < 0
-    parity = 1 - 2 * (turns - 2 * jnp.floor(0.5 * turns))
-    return (
-        parity * sn,
-        jnp.where(swings, cn, parity * cn),
-        jnp.where(swings, parity * dn, dn),
-        jnp.where(swings, parity * ph, ph + turns * jnp.pi),
-    )
+    return widened(functions)(u, parameter)
 
 
 @jax.custom_jvp
-def _reduce(
-    w: FloatArray, q16: FloatArray, ascends: Bool[Array, "..."]
-) -> tuple[FloatArray, FloatArray]:
-    """w less its whole half periods, and their number.
-
-    The half period of w is pi on the circular side and -ln|q(p)| on the hyperbolic
-    one, which is infinite at p = 0.
-    """
-    endless = ascends & (q16 == 0)
-    half_period = jnp.where(ascends, log_nome(jnp.where(endless, 1, q16)), jnp.pi)
-    turns = jnp.where(endless, 0, jnp.round(w / half_period))
-    return w - turns * half_period, turns
+def jacobi(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
+    """(sn, cn, dn, ph) for arguments of one dtype and rank; m + m1 = 1, each as exact as
+    known.  To derivatives m1 is 1 - m: the tangent of m counts, that of m1 does not."""
+    return _values(u, m, m1)
 
 
-@_reduce.defjvp
-def _reduce_jvp(primals, tangents):
-    # Where no half period is taken off, ln|q| is not differentiated: 0 * inf.
-    _, q16, ascends = primals
-    reduced, turns = _reduce(*primals)
-    moves = ascends & (turns != 0)
-    slope = jnp.where(moves, turns, 0) / jnp.where(moves, q16, 1)
-    return (reduced, turns), (tangents[0] + slope * tangents[1], jnp.zeros_like(turns))
+@partial(jacobi.defjvp, symbolic_zeros=True)
+def _jacobi_jvp(primals, tangents):
+    u, m, m1 = primals
+    du, dm, _ = tangents
+    if isinstance(dm, SymbolicZero):
+        functions = jacobi(u, m, m1)
+        return functions, tuple(x * du for x in _by_u(m, *functions))
+    *functions, slope_ = jacobi_and_slope(u, m, m1)
+    return tuple(functions), _tangents(u, m, m1, (*functions, slope_), du, dm)
 
 
-def _around_zero(
-    w: FloatArray, parameter: _Parameter, rungs: Ladder
-) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """sn, cn, dn for w from one quarter period below zero to one above.
-
-    Gauss's transformation (DLMF 22.7) in homogeneous coordinates, sn : cn : dn : 1
-    = s : c : d : h, is a few products a step and no division:
-
-        s, c, d, h  <-  (1 + l) s h, c d, h^2 - l s^2, h^2 + l s^2
-
-    from (sin, cos, 1, 1).  Jacobi's imaginary transformation turns the same step,
-    with -l for l, into the one that ascends from (sinh, cosh, 1, 1), where the
-    homogeneous coordinates are those of sc, nc, dc.  There s and c are kept divided
-    by y = e^|w|, so that no step over- or underflows, for m1 of any size; y is a
-    common factor, a constant as far as derivatives go.
-    """
-    ascends = parameter.ascends
-    sin, cos = sin_cos(jnp.where(ascends, 0, w))
-    sinh, cosh, e = sinh_cosh(jnp.where(ascends, w, 0))
-    s, c = jnp.where(ascends, sinh, sin), jnp.where(ascends, cosh, cos)
-    y = 1 / jnp.maximum(e, jnp.finfo(w.dtype).tiny)
-    signed_y = jnp.where(ascends, -y, 1)
-
-    d = h = jnp.ones_like(w)
-    for rung in rungs.rungs[:0:-1]:
-        shift = rung * signed_y * y * (s * s)
-        s, c, d, h = (1 + rung) * s * h, c * d, h * h - shift, h * h + shift
-    # The last step takes y out of d and h again.  Its l y is p y / (1 + root)^2: the
-    # smallest normal p and the largest y multiply before anything is divided by 4.
-    rung = rungs.rungs[0]
-    shift = signed_y * parameter.p * rungs.square * (s * s)
-    square = e * (h * h)
-    s, c, d, h = (1 + rung) * s * h, c * d, square - shift, square + shift
-
-    circular, reciprocal, negative = parameter.circular, parameter.reciprocal, parameter.negative
-    # Three quotients, not products with one reciprocal: XLA computes what leads to a
-    # quotient once for all who use it, but what leads to a product once for each.
-    unit = jnp.where(circular | reciprocal, h, jnp.where(negative, d, c))
-    sn = s / (unit * parameter.scale)
-    cn = jnp.where(circular, c, jnp.where(reciprocal, d, h)) / unit
-    dn = jnp.where(reciprocal | negative, c, d) / unit
-    # sn^2 + cn^2 = 1 but for the rounding of the steps: taken back, and not differentiated.
-    onto = lax.stop_gradient(1.5 - 0.5 * (sn * sn + cn * cn))
-    return _at_most_one(sn * onto), _at_most_one(cn * onto), dn
+@jax.custom_jvp
+def jacobi_and_slope(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
+    """`jacobi` and the `slope`."""
+    return _values_and_slope(u, m, m1)
 
 
-def _at_most_one(x: FloatArray) -> FloatArray:
-    """x rounded back to [-1, 1]; its derivatives stay those of x."""
-    return x - lax.stop_gradient(x - jnp.clip(x, -1, 1))
+@partial(jacobi_and_slope.defjvp, symbolic_zeros=True)
+def _jacobi_and_slope_jvp(primals, tangents):
+    u, m, m1 = primals
+    du, dm, _ = tangents
+    values = jacobi_and_slope(u, m, m1)
+    sn, cn, dn, _, slope_ = values
+    # The slope by u: d dn / dm, or what follows from (d dn / dm) / sn.
+    by_m = _by_m(u, m, m1, values)
+    by_u = jnp.where(by_amplitude(u, m, m1), by_m[2], -0.5 * cn - m * by_m[1])
+    if isinstance(dm, SymbolicZero):
+        tangents = (*(x * du for x in _by_u(m, *values[:4])), by_u * du)
+    else:
+        by_m = curvature(u, m, m1)
+        tangents = (*_tangents(u, m, m1, values, du, dm), _along(by_u, du, by_m, dm))
+    return values, tangents
+
+
+def curvature(u: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
+    """The derivative of the `slope` with respect to m, by JAX."""
+
+    def slope_of(m, m1):
+        of_m = scales(m, m1)
+        w, turns = reduce(u, of_m.factor, of_m.half_period)
+        return slope(u, w, turns, jacobi(u, m, m1)[:3], m, m1, of_m)
+
+    return jax.jvp(slope_of, (m, m1), (jnp.ones_like(m), -jnp.ones_like(m)))[1]
+
+
+def _by_u(m, sn, cn, dn, ph):
+    del ph
+    return cn * dn, -sn * dn, -m * sn * cn, dn
+
+
+def _by_m(u, m, m1, values):
+    sn, cn, dn, _, slope_ = values
+    swinging = ~by_amplitude(u, m, m1)
+    # By the slope of ph.
+    dsn = cn * slope_
+    # At m = 1 exactly cn leaves the range of the floats, and sn -> -sgn(u) / 4.
+    dsn = jnp.where(jnp.isinf(slope_), -0.25 * sn, dsn)
+    ddn = -sn * (0.5 * sn + m * dsn) / jnp.where(swinging, 1, dn)
+    # By that of dn.
+    other_dsn = -(0.5 * sn + dn * slope_) / jnp.where(swinging, m, 1)
+    dph = other_dsn / jnp.where(swinging, cn, 1)
+    return (
+        jnp.where(swinging, other_dsn, dsn),
+        -sn * jnp.where(swinging, dph, slope_),
+        jnp.where(swinging, sn * slope_, ddn),
+        jnp.where(swinging, dph, slope_),
+    )
+
+
+def _tangents(u, m, m1, values, du, dm):
+    by_u, by_m = _by_u(m, *values[:4]), _by_m(u, m, m1, values)
+    return tuple(_along(x, du, y, dm) for x, y in zip(by_u, by_m, strict=True))
+
+
+def _along(by_u, du, by_m, dm):
+    if isinstance(du, SymbolicZero):
+        return by_m * dm
+    return by_u * du + by_m * dm
+
+
+@jax.jit
+@in_blocks
+def _values(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
+    w, turns, scaled = _reduced(u, m, m1)
+    sn, cn, dn = _functions(w, turns, m, m1, scaled)
+    return sn, cn, dn, _amplitude(sn, cn, turns, m1)
+
+
+@jax.jit
+@in_blocks
+def _values_and_slope(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
+    w, turns, scaled = _reduced(u, m, m1)
+    functions = _functions(w, turns, m, m1, scaled)
+
+    def stage(u, w, turns, m, m1, *functions):
+        of_m = scales(m, m1) if scaled is None else scaled
+        return slope(u, w, turns, functions, m, m1, of_m)
+
+    sn, cn, dn = functions
+    return sn, cn, dn, _amplitude(sn, cn, turns, m1), once(stage, u, w, turns, m, m1, *functions)
+
+
+def _reduced(u, m, m1):
+    """w and turns, and the `scales` of a parameter that many arguments share."""
+    shared = m.shape != jnp.broadcast_shapes(u.shape, m.shape)
+    scaled = once(scales, m, m1) if shared else None
+    ends = scaled[2:4] if shared else once(lambda m, m1: scales(m, m1)[2:4], m, m1)
+    pair = once(lambda *x: lax.complex(*reduce(*x)), u, *ends)
+    return pair.real, pair.imag, scaled
+
+
+def _functions(w, turns, m, m1, scaled):
+    def stage(w, turns, m, m1):
+        of_m = scales(m, m1) if scaled is None else scaled
+        return lax.complex(*sine_and_partner(w, turns, kind(m, m1), of_m))
+
+    pair = once(stage, w, turns, m, m1)
+    sn, partner = pair.real, pair.imag
+    swings, rest = m1 < 0, other(sn, partner, m1)
+    return sn, jnp.where(swings, rest, partner), jnp.where(swings, partner, rest)
+
+
+def _amplitude(sn, cn, turns, m1):
+    ph = angle(sn, jnp.abs(cn))
+    # A half period on, m <= 1 has turned over (sn, cn) and m > 1 swung back (sn, dn).
+    parity = 1 - 2 * (turns - 2 * jnp.floor(0.5 * turns))
+    return jnp.where(m1 < 0, ph, parity * ph + turns * jnp.pi)

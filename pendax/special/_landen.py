@@ -39,6 +39,14 @@ def ladder(p: Float[Array, "..."]) -> Ladder:
     """
     root = jnp.sqrt(1 - p)
     square = 1 / ((1 + root) * (1 + root))
+    rungs, product = climb(p, square)
+    return Ladder(p, root, square, rungs, product)
+
+
+def climb(
+    p: Float[Array, "..."], square: Float[Array, "..."]
+) -> tuple[tuple[Float[Array, "..."], ...], Float[Array, "..."]]:
+    """The rungs from the first, l_1 = p square, and prod(1 + l_n)."""
     l1 = p * square
     r2 = 0.5 * l1 * half_root(l1 * l1)
     l2 = r2 * r2
@@ -52,7 +60,7 @@ def ladder(p: Float[Array, "..."]) -> Ladder:
     product = 1 + rungs[-1]
     for rung in rungs[-2::-1]:
         product = product * (1 + rung)
-    return Ladder(p, root, square, rungs, product)
+    return rungs, product
 
 
 def nome16(rungs: Ladder) -> Float[Array, "..."]:

@@ -1,0 +1,77 @@
+"""What XLA's CPU backend needs to be fast; on other backends these are plain calls."""
+
+import functools
+from collections.abc import Callable
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax import lax
+
+_SMALL = 4096  # elements; below, a stage of its own costs more than it saves
+_BLOCK = 32768  # elements; temporary arrays stay in the cache, and both cores get work
+
+
+def once(function: Callable, *arguments: Any) -> Any:
+    """`function(*arguments)`, elementwise, as a stage whose results are computed once.
+
+    XLA's CPU backend fuses elementwise work into every array that it leads to, and so
+    computes what four outputs share four times; `optimization_barrier` does not stop
+    it, the branch of a conditional does.  The predicate is a constant that XLA can't
+    see through and `vmap` does not map.  Two results that share most of their work are
+    best returned as one array of complex numbers.
+    """
+    results = jax.eval_shape(function, *arguments)
+    if max(x.size for x in jax.tree.leaves(results)) < _SMALL:
+        return function(*arguments)
+
+    def never(*_):
+        return jax.tree.map(lambda x: jnp.zeros(x.shape, x.dtype), results)
+
+    def stage(*arguments):
+        false = lax.optimization_barrier(jnp.zeros((), bool))
+        return lax.cond(false, never, function, *arguments)
+
+    return lax.platform_dependent(*arguments, cpu=stage, default=function)
+
+
+def in_blocks(function: Callable) -> Callable:
+    """`function`, elementwise from arrays of one rank to a tuple of arrays, in blocks.
+
+    Whole arrays of a million elements would pass through main memory some thirty times.
+    Not to be differentiated; a mapped axis becomes one more axis of the arrays.
+    """
+
+    @functools.partial(jax.custom_batching.custom_vmap)
+    def call(*arrays):
+        return lax.platform_dependent(*arrays, cpu=blocks, default=function)
+
+    @call.def_vmap
+    def _(_, mapped, *arrays):
+        arrays = [x if is_mapped else x[None] for x, is_mapped in zip(arrays, mapped, strict=True)]
+        results = call(*arrays)
+        return results, jax.tree.map(lambda _: True, results)
+
+    def blocks(*arrays):
+        shape = jnp.broadcast_shapes(*(x.shape for x in arrays))
+        results = jax.eval_shape(function, *arrays)
+        size = results[0].size
+        if size < 2 * _BLOCK or any(x.shape != shape and x.size != 1 for x in arrays):
+            return function(*arrays)
+        flat = [x.reshape(-1) for x in arrays]
+
+        def block(i, totals):
+            start = jnp.minimum(i * _BLOCK, size - _BLOCK)  # the last two may overlap
+            parts = [
+                x if x.size == 1 else lax.dynamic_slice_in_dim(x, start, _BLOCK) for x in flat
+            ]
+            return tuple(
+                lax.dynamic_update_slice_in_dim(total, part, start, 0)
+                for total, part in zip(totals, function(*parts), strict=True)
+            )
+
+        totals = tuple(jnp.empty(size, x.dtype) for x in results)
+        totals = lax.fori_loop(0, -(-size // _BLOCK), block, totals)
+        return tuple(x.reshape(shape) for x in totals)
+
+    return call

@@ -1,0 +1,127 @@
+"""The derivative of the amplitude with respect to m, without a cancellation at any m.
+
+With N = int_0^u sd^2, DLMF 22.16 gives d ph / d m = -dn N / 2.  The textbook form of N,
+(E(u) - m1 u - m sn cd) / (m m1), is 0/0 at both ends.  Gauss's transformation (the step
+of `steps`) turns it into a recursion whose every rung is a small positive correction,
+
+    N = (1 + l)^3 / (2 (1 - l)) ((1 + l) l N' + z' - s c h / (d d')),
+
+s, c, d, h and N' at the rung below, z' its argument and d' the d of this one; ascending,
+Jacobi's imaginary transformation changes the sign of z' - s c h / (d d') and nothing
+else.  l -> 0 leaves (z - sin z cos z) / 2 and (sinh z cosh z - z) / 2.
+"""
+
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from ._kinds import Kind, Scales, kind
+from ._landen import climb
+from ._steps import endless, foot, steps
+
+FloatArray = Float[Array, "..."]
+
+_LITTLE = 2e-3  # u^2 max(1, |m|): below, the series has the digits, above, the ladder
+
+
+def by_amplitude(u: FloatArray, m: FloatArray, m1: FloatArray) -> Bool[Array, "..."]:
+    """Whether the `slope` is that of ph, or, above m = 1, that of dn over sn: there ph
+    has an infinite slope at its turning points, and dn is the smooth one."""
+    return (m1 >= 0) | _little(u, m)
+
+
+def _little(u, m):
+    return u * u * jnp.maximum(1, jnp.abs(m)) < _LITTLE
+
+
+def slope(
+    u: FloatArray,
+    w: FloatArray,
+    turns: FloatArray,
+    functions: tuple[FloatArray, FloatArray, FloatArray],
+    m: FloatArray,
+    m1: FloatArray,
+    scales: Scales,
+) -> FloatArray:
+    """d ph / d m where `by_amplitude`, else (d dn / d m) / sn; `functions` sn, cn, dn of u.
+
+    circular     -dn N / 2
+    hyperbolic   the same; above m = 1 both terms of d dn / d m have a pole at dn = 0, and
+                 taken together -sn ((1 + l)^2 s h / (2 d^2) - m cn M) / 2, M = N less its last
+                 term
+    negative     int sd^2(u | m) = m1^-3/2 int sn^2(z | mu), mu = -m / m1, z = sqrt(m1) u
+    reciprocal   (d dn / d m) / sn = -cn (u + m^-3/2 N(sqrt(m) u | 1/m)) / 2
+    """
+    sn, cn, dn = functions
+    is_ = kind(m, m1)
+    b, swinging = _integral(w, turns, m, is_, scales)
+    size = scales.size
+    negative = size * size * (dn * u - sn * cn - scales.p * size * b * (dn * dn))
+    reciprocal = cn * u + size * size * size * b
+    twice = jnp.where(is_.negative, negative, jnp.where(is_.reciprocal, reciprocal, b))
+    twice = jnp.where(is_.hyperbolic & is_.swings, swinging, twice)
+    twice = jnp.where(endless(w, is_), jnp.where(w < 0, -jnp.inf, jnp.inf), twice)
+    return jnp.where(_little(u, m), _series(u, m), -0.5 * twice)
+
+
+def _integral(
+    w: FloatArray, turns: FloatArray, m: FloatArray, is_: Kind, scales: Scales
+) -> tuple[FloatArray, FloatArray]:
+    """dn N of the ladder's own parameter, and what replaces it where dn passes zero.
+
+    Ascending, N and z are carried divided by the cosh c at the foot: dn c and N / c have
+    the size of 1 where dn and N leave the range of the floats.
+    """
+    rungs, product = climb(scales.p, scales.square)
+    at = foot(w, is_)
+    climbed = steps(at, is_, scales)[::-1]
+    sign = jnp.where(is_.ascends, -1, 1)
+    # Descending, z counts the turns; ascending, they are added below.
+    z = w + jnp.where(is_.ascends, 0, turns * jnp.pi)
+    z = z / jnp.where(is_.ascends, at.c, 1)
+    n = jnp.zeros_like(w)
+    for rung, below, here in zip(rungs[:0:-1], climbed[:1:-1], climbed[-2:0:-1], strict=True):
+        s, g, d, h = below
+        pole = s * jnp.where(is_.ascends, g, at.c * g) * h / (d * here.d)
+        n = _weight(rung) * ((1 + rung) * rung * n + sign * (z - pole))
+        z = z * (1 + rung)
+    rung, (s, g, d, h), top = rungs[0], climbed[1], climbed[0]
+    weight = _weight(rung)
+    m_over_c = weight * ((1 + rung) * rung * n + sign * z)
+    m_over_c = m_over_c + _turned(turns, is_, scales, product) / at.c
+    ascending = s * h / (d * d)
+    pole = jnp.where(is_.ascends, ascending, s * at.c * g * h / (d * top.h))
+    dn_c = top.d / jnp.where(is_.ascends, top.g, top.h)
+    cn_c = top.h / top.g
+    swinging = 0.5 * (1 + rung) * (1 + rung) * ascending - m * cn_c * m_over_c
+    return dn_c * m_over_c - sign * weight * pole, swinging
+
+
+def _weight(rung):
+    return 0.5 * (1 + rung) * (1 + rung) * (1 + rung) / (1 - rung)
+
+
+def _turned(turns, is_, scales, product):
+    """N over the half periods taken off where the ladder ascends,
+
+    N(2 K) = 2 (E - m1 K) / (m m1), E = 1 / product + K S of `ellipe`, p = m1:
+    2 (1 / (p product) - K (1/2 - (S - p/2) / p)) / (1 - p).
+    """
+    rungs, _ = climb(scales.p, scales.square)
+    t1 = 0.25 * rungs[0]
+    t2 = 0.125 * t1 * (rungs[0] * (1 + rungs[1])) ** 2
+    t3 = 0.125 * t2 * (rungs[1] * (1 + rungs[2])) ** 2
+    turned = is_.ascends & (turns != 0)
+    p = jnp.where(turned, scales.p, 0.5)
+    k = 0.5 * jnp.where(turned, scales.half_period, 1) * product
+    whole = 2 * (1 / (p * product) - k * (0.5 - (t1 + t2 + t3))) / (1 - p)
+    return jnp.where(turned, turns * whole, 0)
+
+
+def _series(u, m):
+    """d ph / d m for little u: the Maclaurin series of am u, differentiated."""
+    x = u * u
+    c5 = (4 + 2 * m) / 120
+    c7 = (16 + m * (88 + 3 * m)) / 5040
+    c9 = (64 + m * (1824 + m * (1224 + 4 * m))) / 362880
+    c11 = (256 + m * (31616 + m * (92304 + m * (14752 + 5 * m)))) / 39916800
+    return u * x * (-1 / 6 + x * (c5 - x * (c7 - x * (c9 - x * c11))))
