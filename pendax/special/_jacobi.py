@@ -12,7 +12,7 @@ from .._arrays import aligned, widened
 from ._cpu import in_blocks, once
 from ._elementary import angle
 from ._kinds import kind, scales
-from ._slope import by_amplitude, slope
+from ._slope import slopes
 from ._steps import other, reduce, sine_and_partner
 
 FloatArray = Float[Array, "..."]
@@ -74,42 +74,45 @@ def _jacobi_jvp(primals, tangents):
     if isinstance(dm, SymbolicZero):
         functions = jacobi(u, m, m1)
         return functions, tuple(x * du for x in _by_u(m, *functions))
-    *functions, slope_ = jacobi_and_slope(u, m, m1)
-    return tuple(functions), _tangents(u, m, m1, (*functions, slope_), du, dm)
+    values = jacobi_and_slopes(u, m, m1)
+    return values[:4], _along(_by_u(m, *values[:4]), du, _by_m(*values), dm)
 
 
 @jax.custom_jvp
-def jacobi_and_slope(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
-    """`jacobi` and the `slope`."""
-    return _values_and_slope(u, m, m1)
+def jacobi_and_slopes(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
+    """`jacobi` and the two `slopes`, d ph / d m and (d dn / d m) / sn."""
+    return _values_and_slopes(u, m, m1)
 
 
-@partial(jacobi_and_slope.defjvp, symbolic_zeros=True)
-def _jacobi_and_slope_jvp(primals, tangents):
+@partial(jacobi_and_slopes.defjvp, symbolic_zeros=True)
+def _jacobi_and_slopes_jvp(primals, tangents):
     u, m, m1 = primals
     du, dm, _ = tangents
-    values = jacobi_and_slope(u, m, m1)
-    sn, cn, dn, _, slope_ = values
-    # The slope by u: d dn / dm, or what follows from (d dn / dm) / sn.
-    by_m = _by_m(u, m, m1, values)
-    by_u = jnp.where(by_amplitude(u, m, m1), by_m[2], -0.5 * cn - m * by_m[1])
+    values = sn, cn, dn, ph, of_ph, of_dn = jacobi_and_slopes(u, m, m1)
+    by_u = *_by_u(m, sn, cn, dn, ph), sn * of_dn, m * sn * of_ph - 0.5 * cn
     if isinstance(dm, SymbolicZero):
-        tangents = (*(x * du for x in _by_u(m, *values[:4])), by_u * du)
-    else:
-        by_m = curvature(u, m, m1)
-        tangents = (*_tangents(u, m, m1, values, du, dm), _along(by_u, du, by_m, dm))
-    return values, tangents
+        return values, tuple(x * du for x in by_u)
+    by_m = *_by_m(*values), *_curvatures(u, m, m1)
+    return values, _along(by_u, du, by_m, dm)
 
 
-def curvature(u: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
-    """The derivative of the `slope` with respect to m, by JAX."""
+def _curvatures(u, m, m1):
+    """The derivatives of the `slopes` with respect to m, by JAX."""
 
-    def slope_of(m, m1):
+    def slopes_of(m, m1):
         of_m = scales(m, m1)
         w, turns = reduce(u, of_m.factor, of_m.half_period)
-        return slope(u, w, turns, jacobi(u, m, m1)[:3], m, m1, of_m)
+        return slopes(u, w, turns, jacobi(u, m, m1)[:3], m, m1, of_m)
 
-    return jax.jvp(slope_of, (m, m1), (jnp.ones_like(m), -jnp.ones_like(m)))[1]
+    tangents = jnp.ones_like(m), -jnp.ones_like(m)
+    return tuple(_saturated(x, u, m) for x in jax.jvp(slopes_of, (m, m1), tangents)[1])
+
+
+def _saturated(x, u, m):
+    """x, and where it leaves the range of the floats about the largest of them: times a
+    tangent of 0 that is 0, and inf is not."""
+    largest = jnp.finfo(x.dtype).max / 2**16
+    return jnp.where(jnp.isfinite(u + m) & ~jnp.isfinite(x), largest, x)
 
 
 def _by_u(m, sn, cn, dn, ph):
@@ -117,34 +120,17 @@ def _by_u(m, sn, cn, dn, ph):
     return cn * dn, -sn * dn, -m * sn * cn, dn
 
 
-def _by_m(u, m, m1, values):
-    sn, cn, dn, _, slope_ = values
-    swinging = ~by_amplitude(u, m, m1)
-    # By the slope of ph.
-    dsn = cn * slope_
-    # At m = 1 exactly cn leaves the range of the floats, and sn -> -sgn(u) / 4.
-    dsn = jnp.where(jnp.isinf(slope_), -0.25 * sn, dsn)
-    ddn = -sn * (0.5 * sn + m * dsn) / jnp.where(swinging, 1, dn)
-    # By that of dn.
-    other_dsn = -(0.5 * sn + dn * slope_) / jnp.where(swinging, m, 1)
-    dph = other_dsn / jnp.where(swinging, cn, 1)
-    return (
-        jnp.where(swinging, other_dsn, dsn),
-        -sn * jnp.where(swinging, dph, slope_),
-        jnp.where(swinging, sn * slope_, ddn),
-        jnp.where(swinging, dph, slope_),
-    )
-
-
-def _tangents(u, m, m1, values, du, dm):
-    by_u, by_m = _by_u(m, *values[:4]), _by_m(u, m, m1, values)
-    return tuple(_along(x, du, y, dm) for x, y in zip(by_u, by_m, strict=True))
+def _by_m(sn, cn, dn, ph, of_ph, of_dn):
+    del dn, ph
+    # At m = 1 cn leaves the range of the floats before its product with the slope does.
+    dsn = jnp.where(jnp.abs(of_ph) < jnp.finfo(sn.dtype).max, cn * of_ph, -0.25 * sn)
+    return dsn, -sn * of_ph, sn * of_dn, of_ph
 
 
 def _along(by_u, du, by_m, dm):
     if isinstance(du, SymbolicZero):
-        return by_m * dm
-    return by_u * du + by_m * dm
+        return tuple(y * dm for y in by_m)
+    return tuple(x * du + y * dm for x, y in zip(by_u, by_m, strict=True))
 
 
 @jax.jit
@@ -157,16 +143,17 @@ def _values(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, .
 
 @jax.jit
 @in_blocks
-def _values_and_slope(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
+def _values_and_slopes(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
     w, turns, scaled = _reduced(u, m, m1)
     functions = _functions(w, turns, m, m1, scaled)
 
     def stage(u, w, turns, m, m1, *functions):
         of_m = scales(m, m1) if scaled is None else scaled
-        return slope(u, w, turns, functions, m, m1, of_m)
+        return lax.complex(*slopes(u, w, turns, functions, m, m1, of_m))
 
+    pair = once(stage, u, w, turns, m, m1, *functions)
     sn, cn, dn = functions
-    return sn, cn, dn, _amplitude(sn, cn, turns, m1), once(stage, u, w, turns, m, m1, *functions)
+    return sn, cn, dn, _amplitude(sn, cn, turns, m1), pair.real, pair.imag
 
 
 def _reduced(u, m, m1):

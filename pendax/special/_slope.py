@@ -1,4 +1,4 @@
-"""The derivative of the amplitude with respect to m, without a cancellation at any m.
+"""The derivatives with respect to m, without a cancellation at any m.
 
 With N = int_0^u sd^2, DLMF 22.16 gives d ph / d m = -dn N / 2.  The textbook form of N,
 (E(u) - m1 u - m sn cd) / (m m1), is 0/0 at both ends.  Gauss's transformation (the step
@@ -23,17 +23,11 @@ FloatArray = Float[Array, "..."]
 _LITTLE = 2e-3  # u^2 max(1, |m|): below, the series has the digits, above, the ladder
 
 
-def by_amplitude(u: FloatArray, m: FloatArray, m1: FloatArray) -> Bool[Array, "..."]:
-    """Whether the `slope` is that of ph, or, above m = 1, that of dn over sn: there ph
-    has an infinite slope at its turning points, and dn is the smooth one."""
-    return (m1 >= 0) | _little(u, m)
-
-
 def _little(u, m):
     return u * u * jnp.maximum(1, jnp.abs(m)) < _LITTLE
 
 
-def slope(
+def slopes(
     u: FloatArray,
     w: FloatArray,
     turns: FloatArray,
@@ -41,26 +35,34 @@ def slope(
     m: FloatArray,
     m1: FloatArray,
     scales: Scales,
-) -> FloatArray:
-    """d ph / d m where `by_amplitude`, else (d dn / d m) / sn; `functions` sn, cn, dn of u.
+) -> tuple[FloatArray, FloatArray]:
+    """(d ph / d m, (d dn / d m) / sn); `functions` are sn, cn, dn of u.
 
-    circular     -dn N / 2
-    hyperbolic   the same; above m = 1 both terms of d dn / d m have a pole at dn = 0, and
-                 taken together -sn ((1 + l)^2 s h / (2 d^2) - m cn M) / 2, M = N less its last
-                 term
+    One follows from the other, (d dn / d m) / sn = -(sn / 2 + m cn d ph / d m) / dn, where
+    dn is not small, and the other from the one where cn is not.  On the hyperbolic side
+    both are small, so each is computed: at dn = 0 the two poles of d dn / d m are
+    taken together to -((1 + l)^2 s h / (2 d^2) - m cn M) / 2, M = N less its last term.
+
     negative     int sd^2(u | m) = m1^-3/2 int sn^2(z | mu), mu = -m / m1, z = sqrt(m1) u
     reciprocal   (d dn / d m) / sn = -cn (u + m^-3/2 N(sqrt(m) u | 1/m)) / 2
     """
     sn, cn, dn = functions
     is_ = kind(m, m1)
-    b, swinging = _integral(w, turns, m, is_, scales)
+    b, c = _integral(w, turns, m, is_, scales)
     size = scales.size
     negative = size * size * (dn * u - sn * cn - scales.p * size * b * (dn * dn))
     reciprocal = cn * u + size * size * size * b
-    twice = jnp.where(is_.negative, negative, jnp.where(is_.reciprocal, reciprocal, b))
-    twice = jnp.where(is_.hyperbolic & is_.swings, swinging, twice)
-    twice = jnp.where(endless(w, is_), jnp.where(w < 0, -jnp.inf, jnp.inf), twice)
-    return jnp.where(_little(u, m), _series(u, m), -0.5 * twice)
+    largest = jnp.where(w < 0, -1, 1) * jnp.finfo(w.dtype).max
+    b = jnp.where(endless(w, is_), 2 * largest, b * jnp.where(dn < 0, -1, 1))
+    c = jnp.where(endless(w, is_), 2 * largest, c * jnp.where(cn < 0, -1, 1))
+    little = _little(u, m)
+    ph = jnp.where(little, _series(u, m), -0.5 * jnp.where(is_.negative, negative, b))
+    dn_small = is_.reciprocal & ~little
+    by_ph = -(0.5 * sn + m * cn * ph) / jnp.where(dn_small, 1, dn)
+    by_dn = -0.5 * jnp.where(is_.reciprocal, reciprocal, c)
+    by_dn = jnp.where((is_.hyperbolic | is_.reciprocal) & ~little, by_dn, by_ph)
+    from_dn = -(0.5 * sn + dn * by_dn) / (jnp.where(dn_small, m, 1) * jnp.where(dn_small, cn, 1))
+    return jnp.where(dn_small, from_dn, ph), by_dn
 
 
 def _integral(
@@ -87,13 +89,17 @@ def _integral(
     rung, (s, g, d, h), top = rungs[0], climbed[1], climbed[0]
     weight = _weight(rung)
     m_over_c = weight * ((1 + rung) * rung * n + sign * z)
-    m_over_c = m_over_c + _turned(turns, is_, scales, product) / at.c
     ascending = s * h / (d * d)
     pole = jnp.where(is_.ascends, ascending, s * at.c * g * h / (d * top.h))
     dn_c = top.d / jnp.where(is_.ascends, top.g, top.h)
     cn_c = top.h / top.g
-    swinging = 0.5 * (1 + rung) * (1 + rung) * ascending - m * cn_c * m_over_c
-    return dn_c * m_over_c - sign * weight * pole, swinging
+    # 1 / p meets dn and cn, of the size of its root or more, in two halves: its own
+    # derivative, 1 / p^2, leaves the range of the floats where theirs does not.
+    half, turned = _turned(turns, is_, scales, product)
+    of_dn = dn_c * m_over_c + (dn_c / at.c * half) * (half * turned)
+    of_cn = cn_c * m_over_c + (cn_c / at.c * half) * (half * turned)
+    swinging = 0.5 * (1 + rung) * (1 + rung) * ascending - m * of_cn
+    return of_dn - sign * weight * pole, swinging
 
 
 def _weight(rung):
@@ -101,9 +107,10 @@ def _weight(rung):
 
 
 def _turned(turns, is_, scales, product):
-    """N over the half periods taken off where the ladder ascends,
+    """N over the half periods taken off where the ladder ascends, and a factor of it
+    that is taken out twice, |p|^-1/2.
 
-    N(2 K) = 2 (E - m1 K) / (m m1), E = 1 / product + K S of `ellipe`, p = m1:
+    N(2 K) = 2 (E - m1 K) / (m m1) with the E = 1 / product + K S of `ellipe`, p = m1, is
     2 (1 / (p product) - K (1/2 - (S - p/2) / p)) / (1 - p).
     """
     rungs, _ = climb(scales.p, scales.square)
@@ -112,9 +119,10 @@ def _turned(turns, is_, scales, product):
     t3 = 0.125 * t2 * (rungs[1] * (1 + rungs[2])) ** 2
     turned = is_.ascends & (turns != 0)
     p = jnp.where(turned, scales.p, 0.5)
+    sign = jnp.where(p < 0, -1, 1)
     k = 0.5 * jnp.where(turned, scales.half_period, 1) * product
-    whole = 2 * (1 / (p * product) - k * (0.5 - (t1 + t2 + t3))) / (1 - p)
-    return jnp.where(turned, turns * whole, 0)
+    whole = 2 * (sign / product - sign * p * k * (0.5 - (t1 + t2 + t3))) / (1 - p)
+    return 1 / jnp.sqrt(sign * p), jnp.where(turned, turns * whole, 0)
 
 
 def _series(u, m):
