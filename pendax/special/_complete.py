@@ -1,10 +1,13 @@
 """The complete integrals K and E, for every real parameter up to 1."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common, widened
+from ._cpu import in_blocks
 from ._landen import Ladder, ladder, log_nome, nome16
 
 
@@ -48,27 +51,52 @@ def ellipe(m: ArrayLike) -> Float[Array, "..."]:
     return widened(lambda m: _e(m, 1 - m))(m)
 
 
-@jax.jit
+def _inside(function):
+    """`function(m, m1)` where m1 > 0, in blocks; its derivatives are those of its steps."""
+    value = jax.jit(in_blocks(lambda m, m1: (function(m, m1),)))
+
+    @jax.custom_jvp
+    def call(m, m1):
+        return value(m, m1)[0]
+
+    call.defjvp(lambda primals, tangents: jax.jvp(jax.jit(function), primals, tangents))
+    return call
+
+
+@_inside
+def _k_inside(m, m1):
+    return _complete(m, jnp.where(m1 > 0, m1, 1))[0]
+
+
+@_inside
+def _e_inside(m, m1):
+    return _complete(m, jnp.where(m1 > 0, m1, 1))[1]
+
+
 def _k(m, m1):
-    k, _ = _complete(m, jnp.where(m1 > 0, m1, 1))
-    return _with_edge(m1, k, jnp.inf, -1)
+    return _edged(_k_inside(m, m1), m1, jnp.inf, -jnp.inf)
 
 
-@jax.jit
 def _e(m, m1):
-    _, e = _complete(m, jnp.where(m1 > 0, m1, 1))
-    return _with_edge(m1, e, 1, 1)
+    return _edged(_e_inside(m, m1), m1, 1.0, jnp.inf)
 
 
-def _with_edge(m1, inside, at_one, slope):
-    """`inside` for m1 > 0, `at_one` for m1 = 0, NaN with a NaN gradient for m1 < 0.
+@partial(jax.custom_jvp, nondiff_argnums=(2, 3))
+def _edged(inside, m1, at_one, slope):
+    """`inside` for m1 > 0; at m1 = 0 `at_one`, whose derivative in m1 is `slope`; NaN with
+    a NaN gradient for m1 < 0."""
+    del slope
+    return jnp.where(m1 > 0, inside, jnp.where(m1 == 0, at_one, jnp.nan))
 
-    At m1 = 0 the derivative in m1 is infinite, of the sign of `slope`, and so is that
-    of the square root.
-    """
-    edge = at_one + slope * jnp.sqrt(jnp.where(m1 == 0, m1, 1))
-    outside = jnp.nan * jnp.where(m1 >= 0, 1, m1)
-    return jnp.where(m1 > 0, inside, jnp.where(m1 == 0, edge, outside))
+
+@_edged.defjvp
+def _edged_jvp(at_one, slope, primals, tangents):
+    inside, m1 = primals
+    d_inside, d_m1 = tangents
+    edge = jnp.where(m1 == 0, slope, jnp.nan)
+    return _edged(inside, m1, at_one, slope), (
+        jnp.where(m1 > 0, 1, 0) * d_inside + jnp.where(m1 > 0, 0, edge) * d_m1
+    )
 
 
 def _complete(
@@ -88,9 +116,8 @@ def _complete(
     """
     circular = (m >= -1) & (m <= 0.5)
     negative = m < -1
-    scale = jnp.where(negative, m1, 1)
-    p = jnp.where(circular, m, jnp.where(negative, 1 / scale, m1))
-    scale = jnp.sqrt(scale)
+    p = jnp.where(circular, m, jnp.where(negative, 1 / jnp.where(negative, m1, 1), m1))
+    scale = jnp.sqrt(jnp.where(negative, p, 1))
     rungs = ladder(p)
 
     q16 = jnp.where(circular, 1, nome16(rungs))
@@ -98,7 +125,7 @@ def _complete(
     k = quarter * rungs.product
     s = _squares(p, rungs)
     e = jnp.where(circular, k * (1 - s), 1 / rungs.product + k * s)
-    return k / scale, e * scale
+    return k * scale, e / scale
 
 
 def _squares(p: Float[Array, "..."], rungs: Ladder) -> Float[Array, "..."]:

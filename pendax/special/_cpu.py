@@ -9,7 +9,7 @@ import jax.numpy as jnp
 from jax import lax
 
 _SMALL = 4096  # elements; below, a stage of its own costs more than it saves
-_BLOCK = 32768  # elements; temporary arrays stay in the cache, and both cores get work
+_BLOCK = 16384  # elements; temporary arrays stay in the cache, and both cores get work
 
 
 def once(function: Callable, *arguments: Any) -> Any:

@@ -13,7 +13,7 @@ from ._cpu import in_blocks, once
 from ._elementary import angle
 from ._kinds import kind, scales
 from ._slope import slopes
-from ._steps import other, reduce, sine_and_partner
+from ._steps import other, parity, reduce, reduce_late, sine_and_partner
 
 FloatArray = Float[Array, "..."]
 
@@ -101,7 +101,7 @@ def _curvatures(u, m, m1):
 
     def slopes_of(m, m1):
         of_m = scales(m, m1)
-        w, turns = reduce(u, of_m.factor, of_m.half_period)
+        w, turns = reduce_late(u, of_m.factor, of_m.half_period)
         return slopes(u, w, turns, jacobi(u, m, m1)[:3], m, m1, of_m)
 
     tangents = jnp.ones_like(m), -jnp.ones_like(m)
@@ -179,5 +179,4 @@ def _functions(w, turns, m, m1, scaled):
 def _amplitude(sn, cn, turns, m1):
     ph = angle(sn, jnp.abs(cn))
     # A half period on, m <= 1 has turned over (sn, cn) and m > 1 swung back (sn, dn).
-    parity = 1 - 2 * (turns - 2 * jnp.floor(0.5 * turns))
-    return jnp.where(m1 < 0, ph, parity * ph + turns * jnp.pi)
+    return jnp.where(m1 < 0, ph, parity(turns) * ph + turns * jnp.pi)

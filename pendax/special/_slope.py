@@ -16,7 +16,7 @@ from jaxtyping import Array, Bool, Float
 
 from ._kinds import Kind, Scales, kind
 from ._landen import climb
-from ._steps import endless, foot, steps
+from ._steps import endless, foot, parity, steps
 
 FloatArray = Float[Array, "..."]
 
@@ -53,8 +53,8 @@ def slopes(
     negative = size * size * (dn * u - sn * cn - scales.p * size * b * (dn * dn))
     reciprocal = cn * u + size * size * size * b
     largest = jnp.where(w < 0, -1, 1) * jnp.finfo(w.dtype).max
-    b = jnp.where(endless(w, is_), 2 * largest, b * jnp.where(dn < 0, -1, 1))
-    c = jnp.where(endless(w, is_), 2 * largest, c * jnp.where(cn < 0, -1, 1))
+    b = jnp.where(endless(w, is_), 2 * largest, b * jnp.where(is_.swings, parity(turns), 1))
+    c = jnp.where(endless(w, is_), 2 * largest, c * jnp.where(is_.swings, 1, parity(turns)))
     little = _little(u, m)
     ph = jnp.where(little, _series(u, m), -0.5 * jnp.where(is_.negative, negative, b))
     dn_small = is_.reciprocal & ~little

@@ -24,6 +24,25 @@ def reduce(
     return w - turns * jnp.where(turns == 0, 1, half_period), turns
 
 
+def reduce_late(
+    u: FloatArray, factor: FloatArray, half_period: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """`reduce` for a long half period in w from -8 to all but 8 of it, and so for -u.
+
+    The derivative of a half period with respect to m1 is about 1 / m1, and what two of
+    them add to a second derivative cancels until the function is no longer small.
+    """
+    w = u * factor
+    early = jnp.minimum(0.5, 8 / half_period)
+    turns = jnp.sign(w) * jnp.floor(jnp.abs(w) / half_period + early)
+    return w - turns * jnp.where(turns == 0, 1, half_period), turns
+
+
+def parity(turns: FloatArray) -> FloatArray:
+    """1 for an even and -1 for an odd number of half periods."""
+    return 1 - 2 * (turns - 2 * jnp.floor(0.5 * turns))
+
+
 class Step(NamedTuple):
     """Homogeneous coordinates at one rung.
 
@@ -100,7 +119,7 @@ def sine_and_partner(
     partner = jnp.where(endless(w, is_), 0, partner)
     # The square of the hypotenuse is 1 but for the rounding of the steps: taken back.
     unit = 1.5 - 0.5 * (side * side + partner * partner)
-    unit = unit * (1 - 2 * (turns - 2 * jnp.floor(0.5 * turns)))
+    unit = unit * parity(turns)
     sn = sn * jnp.where(is_.hyperbolic, 1, scales.size) * unit
     return jnp.clip(sn, -1, 1), jnp.clip(partner * unit, -1, 1)
 
