@@ -5,7 +5,9 @@ m = k^2 throughout, never the modulus k; m1 = 1 - m is its complement, for m so 
 to 1 that 1 - m has lost its digits.
 """
 
+from ._arcsn import arcsn as arcsn
 from ._complete import ellipe as ellipe
 from ._complete import ellipk as ellipk
 from ._complete import ellipkm1 as ellipkm1
 from ._jacobi import ellipj as ellipj
+from ._nome import ellipnome as ellipnome

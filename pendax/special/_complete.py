@@ -8,7 +8,7 @@ from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common, widened
 from ._cpu import in_blocks
-from ._landen import Ladder, ladder, log_nome, nome16
+from ._landen import LN2, Ladder, ladder, log_nome, nome16
 
 
 def ellipk(m: ArrayLike) -> Float[Array, "..."]:
@@ -116,16 +116,20 @@ def _complete(
     """
     circular = (m >= -1) & (m <= 0.5)
     negative = m < -1
-    p = jnp.where(circular, m, jnp.where(negative, 1 / jnp.where(negative, m1, 1), m1))
-    scale = jnp.sqrt(jnp.where(negative, p, 1))
+    divisor = jnp.where(negative, m1, 1)
+    p = jnp.where(circular, m, jnp.where(negative, 1 / divisor, m1))
+    scale = jnp.sqrt(divisor)
     rungs = ladder(p)
 
-    q16 = jnp.where(circular, 1, nome16(rungs))
-    quarter = jnp.where(circular, 0.5 * jnp.pi, 0.5 * log_nome(q16))
+    # Where 1 / m1 is no normal number any more, 4 / m1 still is, and 16 q is 1 / m1.
+    last = divisor > 0.25 / jnp.finfo(m.dtype).tiny
+    q16 = jnp.where(circular, 1, jnp.where(last, 4 / divisor, nome16(rungs)))
+    half_period = log_nome(q16) + jnp.where(last, 2 * LN2, 0)
+    quarter = jnp.where(circular, 0.5 * jnp.pi, 0.5 * half_period)
     k = quarter * rungs.product
     s = _squares(p, rungs)
     e = jnp.where(circular, k * (1 - s), 1 / rungs.product + k * s)
-    return k * scale, e / scale
+    return k / scale, e * scale
 
 
 def _squares(p: Float[Array, "..."], rungs: Ladder) -> Float[Array, "..."]:

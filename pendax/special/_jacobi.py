@@ -8,8 +8,8 @@ from jax import lax
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, ArrayLike, Float
 
-from .._arrays import aligned, widened
 from ._cpu import in_blocks, once
+from ._either import with_parameter
 from ._elementary import angle
 from ._kinds import kind, scales
 from ._slope import slopes
@@ -45,19 +45,7 @@ def ellipj(
 
     DLMF 22.2; computed by 22.7 (Landen's transformations, both ways).
     """
-    if (m is None) == (m1 is None):
-        raise ValueError(
-            "Arguments `m` and `m1` must be given one without the other, but got "
-            + ("neither." if m is None else "both.")
-        )
-    given = {"u": u, "m": m} if m1 is None else {"u": u, "m1": m1}
-    u, parameter = aligned(**given)
-
-    def functions(u, parameter):
-        pair = (parameter, 1 - parameter) if m1 is None else (1 - parameter, parameter)
-        return jacobi(u, *pair)
-
-    return widened(functions)(u, parameter)
+    return with_parameter(jacobi, m, m1, u=u)
 
 
 @jax.custom_jvp

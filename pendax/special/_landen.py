@@ -80,7 +80,7 @@ def nome16(rungs: Ladder) -> Float[Array, "..."]:
 
 def log_nome(q16: Float[Array, "..."]) -> Float[Array, "..."]:
     """-ln|q| = pi K(1 - p) / K(p)."""
-    return 4 * _LN2 - log(jnp.where(q16 < 0, -q16, q16))
+    return 4 * LN2 - log(jnp.where(q16 < 0, -q16, q16))
 
 
-_LN2 = 0.6931471805599453
+LN2 = 0.6931471805599453
