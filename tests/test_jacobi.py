@@ -172,7 +172,9 @@ def test_second_derivatives(tag, mode):
             largest = max(abs(float(x)) for x in d[order])
             # What a rounding of the arguments does, in units of it.
             moved = [
-                references.derivatives(u * (1 + k * 2**-30), name, p * (1 + (1 - k) * 2**-30))[order]
+                references.derivatives(u * (1 + k * 2**-30), name, p * (1 + (1 - k) * 2**-30))[
+                    order
+                ]
                 for k in (0, 1)
             ]
             for f in range(4):

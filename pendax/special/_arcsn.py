@@ -49,13 +49,13 @@ def _arcsn_jvp(primals, tangents):
     dx, dm, _ = tangents
     u = _arcsn(x, m, m1)
     cn2, dn2 = _squares(x, m, m1)
-    terms = []
+    tangent = jnp.zeros_like(u)
     if not isinstance(dx, SymbolicZero):
-        terms.append(dx / jnp.sqrt(cn2 * dn2))
+        tangent = tangent + dx / (jnp.sqrt(cn2) * jnp.sqrt(dn2))
     if not isinstance(dm, SymbolicZero):
         *_, of_ph, _ = jacobi_and_slopes(u, m, m1)
-        terms.append(-of_ph / jnp.sqrt(dn2) * dm)
-    return u, sum(terms)
+        tangent = tangent - of_ph / jnp.sqrt(dn2) * dm
+    return u, tangent
 
 
 def _squares(x, m, m1):
@@ -74,7 +74,7 @@ def _value(x: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
     the angle of (s, c) at the foot, else asinh s.
     """
     is_, of_m = kind(m, m1), scales(m, m1)
-    rungs, product = climb(of_m.p, of_m.square)
+    rungs, _ = climb(of_m.p, of_m.square)
     cn2, dn2 = _squares(x, m, m1)
     cn, dn = jnp.sqrt(cn2), jnp.sqrt(dn2)
     scale = jnp.where(is_.negative | is_.reciprocal, 1 / of_m.size, 1)

@@ -62,9 +62,7 @@ def in_blocks(function: Callable) -> Callable:
 
         def block(i, totals):
             start = jnp.minimum(i * _BLOCK, size - _BLOCK)  # the last two may overlap
-            parts = [
-                x if x.size == 1 else lax.dynamic_slice_in_dim(x, start, _BLOCK) for x in flat
-            ]
+            parts = [x if x.size == 1 else lax.dynamic_slice_in_dim(x, start, _BLOCK) for x in flat]
             return tuple(
                 lax.dynamic_update_slice_in_dim(total, part, start, 0)
                 for total, part in zip(totals, function(*parts), strict=True)

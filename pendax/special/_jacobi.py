@@ -148,7 +148,7 @@ def _reduced(u, m, m1):
     """w and turns, and the `scales` of a parameter that many arguments share."""
     shared = m.shape != jnp.broadcast_shapes(u.shape, m.shape)
     scaled = once(scales, m, m1) if shared else None
-    ends = scaled[2:4] if shared else once(lambda m, m1: scales(m, m1)[2:4], m, m1)
+    ends = scaled[2:4] if scaled is not None else once(lambda m, m1: scales(m, m1)[2:4], m, m1)
     pair = once(lambda *x: lax.complex(*reduce(*x)), u, *ends)
     return pair.real, pair.imag, scaled
 

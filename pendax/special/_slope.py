@@ -12,7 +12,7 @@ else.  l -> 0 leaves (z - sin z cos z) / 2 and (sinh z cosh z - z) / 2.
 """
 
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Float
 
 from ._kinds import Kind, Scales, kind
 from ._landen import climb
@@ -31,7 +31,7 @@ def slopes(
     u: FloatArray,
     w: FloatArray,
     turns: FloatArray,
-    functions: tuple[FloatArray, FloatArray, FloatArray],
+    functions: tuple[FloatArray, ...],
     m: FloatArray,
     m1: FloatArray,
     scales: Scales,
