@@ -8,7 +8,7 @@ import jax
 import jax.numpy as jnp
 from jax import lax
 
-_SMALL = 4096  # elements; below, a stage of its own costs more than it saves
+_SMALL = 256  # elements; below, a stage of its own costs more than it saves
 _BLOCK = 16384  # elements; temporary arrays stay in the cache, and both cores get work
 
 

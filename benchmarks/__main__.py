@@ -1,0 +1,35 @@
+"""The command line of the benchmarks."""
+
+import argparse
+import sys
+from pathlib import Path
+
+# The references and the tagged cases are those of the tests.
+sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    commands = parser.add_subparsers(dest="command", required=True)
+    accuracy = commands.add_parser("accuracy", help="errors in eps by region, beside SciPy's")
+    accuracy.add_argument("--seed", type=int, default=1, help="draws other points")
+    accuracy.add_argument("--points", type=int, default=400, help="of each region")
+    special = commands.add_parser("special", help="error against run time, beside the peers'")
+    special.add_argument("--seed", type=int, default=1, help="draws other arguments")
+    special.add_argument("--size", type=int, default=2**20, help="elements of an array")
+    special.add_argument("--rounds", type=int, default=15, help="timings of each, interleaved")
+    special.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
+    options = vars(parser.parse_args())
+
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+    if options.pop("command") == "accuracy":
+        from .accuracy import report
+    else:
+        from .special import report
+    return report(**options)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,137 @@
+"""Maximal and mean errors by region, pendax and SciPy side by side.
+
+In eps = 2^-52, of |f| + |u df/du| for the Jacobi functions (the error that a rounding of
+u makes, and of the value itself), of |f| for K and E, and of |f| + |x df/dx| + |m df/dm|
+for the nome and arcsn.
+"""
+
+from collections.abc import Callable
+
+import flint
+import jax.numpy as jnp
+import numpy as np
+import references
+import scipy.special
+from cases import cases
+
+from pendax import special
+
+EPS = 2.0**-52
+
+
+def report(seed: int, points: int) -> int:
+    print("| function | region | pendax max | mean | SciPy max | mean |")
+    print("|---|---|---|---|---|---|")
+    for tag, case in cases("float64", points, seed).items():
+        ours, theirs = jacobi_errors(case)
+        show("sn, cn, dn", f"{tag} ({case.name})", ours, theirs)
+    for name, region, x in complete_cases(points, seed):
+        ours = complete_errors(name, x, np.asarray(getattr(special, name)(x)))
+        theirs = complete_errors(name, x, getattr(scipy.special, name)(x))
+        show(name, region, ours, theirs)
+    for name, region, ours in inverse_errors(points, seed):
+        show(name, region, ours, None)
+    return 0
+
+
+def show(function: str, region: str, ours, theirs) -> None:
+    cells = []
+    for errors in (ours, theirs):
+        if errors is None:
+            cells += ["", ""]
+        else:
+            cells += [f"{np.max(errors):.2g}", f"{np.mean(errors):.2g}"]
+    print(f"| {function} | {region} | {' | '.join(cells)} |", flush=True)
+
+
+def jacobi_errors(case) -> tuple[np.ndarray, np.ndarray | None]:
+    """The largest of the three functions' at each point; None where SciPy has no value."""
+    u, p = case.u, case.parameter
+    m = p if case.name == "m" else 1 - p
+    ours = np.stack(special.ellipj(u, **{case.name: p})[:3])
+    theirs = np.stack(scipy.special.ellipj(u, m)[:3])
+    errors = [jacobi_error(case.name, *at) for at in zip(u, p, ours.T, theirs.T, strict=True)]
+    mine, scipys = np.array(errors).T
+    return mine, None if np.isnan(theirs).any() else scipys
+
+
+def jacobi_error(name, u, parameter, *rows) -> list[float]:
+    tiny = abs(parameter) if name == "m1" else 1.0
+    bits = 300 + int(-2 * np.log2(tiny)) + int(2 * abs(np.log2(abs(u) + 1e-300)))
+    with flint.ctx.workprec(bits):
+        p = flint.arb(float(parameter))
+        m, m1 = (p, 1 - p) if name == "m" else (1 - p, p)
+        s, c, d = references.ball_jacobi(flint.arb(float(u)), m, m1)
+        slopes = (c * d, s * d, m * s * c)
+        worst = []
+        for row in rows:
+            parts = [
+                float(abs(flint.arb(float(got)) - f) / (abs(f) + abs(float(u) * slope)))
+                for got, f, slope in zip(row, (s, c, d), slopes, strict=True)
+            ]
+            worst.append(max(parts) / EPS)
+        return worst
+
+
+def complete_cases(points: int, seed: int):
+    rng = np.random.default_rng(seed)
+    inside, tiny = rng.uniform(0, 1, points), 10 ** rng.uniform(-307, 0, points)
+    huge = 10 ** rng.uniform(0, 300, points)
+    for name in ("ellipk", "ellipe"):
+        yield name, "0 < m < 1", inside
+        yield name, "m near 1", 1 - 10 ** rng.uniform(-16, -1, points)
+        yield name, "m < 0", -huge
+    yield "ellipkm1", "tiny m1", tiny
+    yield "ellipkm1", "m1 > 1", huge
+
+
+def complete_errors(name: str, x: np.ndarray, got: np.ndarray) -> list[float]:
+    with flint.ctx.workprec(2300):
+        errors = []
+        for value, at in zip(got, map(float, x), strict=True):
+            m = 1 - flint.arb(at) if name == "ellipkm1" else flint.arb(at)
+            complete = flint.acb.elliptic_e if name == "ellipe" else flint.acb.elliptic_k
+            true = complete(flint.acb(m)).real
+            errors.append(float(abs(flint.arb(float(value)) / true - 1)) / EPS)
+        return errors
+
+
+def inverse_errors(points: int, seed: int):
+    rng = np.random.default_rng(seed)
+    x = rng.uniform(-1, 1, points)
+    for name, parameter in (
+        ("m", rng.uniform(0, 1, points)),
+        ("m1", 10 ** rng.uniform(-300, 0, points)),
+    ):
+        region = "0 < m < 1" if name == "m" else "m1 from 1e-300"
+        got = np.asarray(special.ellipnome(**{name: jnp.asarray(parameter)}))
+        yield "ellipnome", region, scaled(name, nome, [parameter], got)
+        got = np.asarray(special.arcsn(x, **{name: jnp.asarray(parameter)}))
+        yield "arcsn", region, scaled(name, inverse_sn, [x, parameter], got)
+
+
+def scaled(name: str, function: Callable, columns: list, got: np.ndarray) -> list[float]:
+    """Errors in eps × scale, the derivatives by differences."""
+    with flint.ctx.workprec(2600):
+        errors = []
+        for value, *row in zip(got, *columns, strict=True):
+            at = [flint.arb(float(x)) for x in row]
+            true = function(name, *at)
+            scale = abs(true)
+            for k in range(len(at)):
+                moved = list(at)
+                moved[k] = at[k] * (1 + flint.arb(2) ** -200)
+                scale += abs(function(name, *moved) - true) * flint.arb(2) ** 200
+            errors.append(float(abs(flint.arb(float(value)) - true) / scale) / EPS)
+        return errors
+
+
+def nome(name: str, p: flint.arb) -> flint.arb:
+    m, m1 = (p, 1 - p) if name == "m" else (1 - p, p)
+    one = flint.arb(1)
+    return (-flint.arb.pi() * one.agm(m1.sqrt()) / one.agm(m.sqrt())).exp()
+
+
+def inverse_sn(name: str, x: flint.arb, p: flint.arb) -> flint.arb:
+    m = p if name == "m" else 1 - p
+    return flint.acb.elliptic_f(flint.acb(x.asin()), flint.acb(m)).real
