@@ -169,10 +169,7 @@ def bars(rows: list[Row]) -> int:
     print("\n| times as fast | measured | bar | |\n|---|---|---|---|")
     missed = 0
     for name, ratio, bar in ratios:
-        if np.isnan(ratio):
-            verdict = "skipped"
-        else:
-            verdict = "met" if ratio >= bar else "missed"
+        verdict = "met" if ratio >= bar else "skipped" if np.isnan(ratio) else "missed"
         missed += verdict == "missed"
         print(f"| {name} | {ratio:.2f} | {bar:.2g} | {verdict} |")
     return missed

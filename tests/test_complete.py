@@ -100,3 +100,18 @@ def test_legendres_relation():
     m = jnp.linspace(0.001, 0.999, 999)
     k, e, k1, e1 = ellipk(m), ellipe(m), ellipk(1 - m), ellipe(1 - m)
     np.testing.assert_allclose(e * k1 + e1 * k - k * k1, np.pi / 2, rtol=3e-15)
+
+
+def test_slopes_far_out_and_beyond_the_ends():
+    """Where 1 / m1^2 is no float any more, and where there is no value."""
+    for value, true in (
+        (jax.grad(ellipk)(-1e154), 8.884267326083069e-230),
+        (jax.grad(ellipkm1)(1e154), -8.884267326083069e-230),
+        (jax.grad(ellipe)(-1e154), -5e-78),
+    ):
+        np.testing.assert_allclose(value, true, rtol=1e-12)
+    second = [jax.grad(jax.grad(f))(1.0) for f in (ellipk, ellipe)]
+    np.testing.assert_array_equal(second, [np.inf, -np.inf])
+    for f in (ellipk, ellipe):
+        for m in (2.0, np.inf, np.nan):
+            assert np.isnan(jax.grad(jax.grad(f))(m))

@@ -231,6 +231,36 @@ def test_shapes_dtypes_and_modes(dtype):
     assert all(x.dtype == jnp.bfloat16 for x in ellipj(jnp.bfloat16(1), 0.5))
 
 
+def test_at_one_beyond_the_range_of_cosh(dtype):
+    """m = 1 and cosh u out of range: a slope that overflows spoils no other derivative."""
+    u = 100.0 if dtype == np.float32 else 800.0
+    x = jnp.array([u, 1.0], dtype)
+    for mode in (jax.jacfwd, jax.jacrev):
+        jacobian = mode(lambda x: jnp.stack(ellipj(x[0], x[1])))(x)
+        np.testing.assert_array_equal(jacobian[:, 0], 0)
+        assert jacobian[0, 1] == -0.25
+        assert jnp.isfinite(jacobian).all()
+    hessian = jax.hessian(lambda x: jnp.stack(ellipj(x[0], x[1])))(x)
+    np.testing.assert_array_equal(hessian[:, 0, 0], 0)
+
+
+def test_blocks_are_the_whole():
+    """Arrays that the CPU works through in blocks, the last of them overlapping."""
+    from pendax.special import _cpu
+
+    rng = np.random.default_rng(12)
+    for size in (2 * _cpu._BLOCK - 1, 2 * _cpu._BLOCK, 2 * _cpu._BLOCK + 1000):
+        u, m = rng.uniform(-9, 9, size), rng.uniform(-3, 3, size)
+        for parameter in (m, m[:1]):
+            whole = jnp.stack(ellipj(u, parameter))
+            some = slice(size - 2000, size)
+            part = jnp.stack(ellipj(u[some], parameter[some] if parameter is m else parameter))
+            np.testing.assert_allclose(whole[:, some], part, rtol=0, atol=1e-13)
+            np.testing.assert_allclose(
+                whole[:, :50], jnp.stack(ellipj(u[:50], parameter[:50])), rtol=0, atol=1e-13
+            )
+
+
 def test_nan_stays_in_its_lane():
     u = jnp.array([1.0, jnp.nan, 1.0, jnp.inf, 1.0])
     m = jnp.array([0.5, 0.5, jnp.nan, 0.5, jnp.inf])

@@ -51,50 +51,59 @@ def ellipe(m: ArrayLike) -> Float[Array, "..."]:
     return widened(lambda m: _e(m, 1 - m))(m)
 
 
-def _inside(function):
-    """`function(m, m1)` where m1 > 0, in blocks; its derivatives are those of its steps."""
-    value = jax.jit(in_blocks(lambda m, m1: (function(m, m1),)))
+def _inside(which, slope):
+    """K or E where m1 > 0, in blocks.  Its derivatives are those of its steps, and `slope`
+    for m < -1, where those would form 1 / m1^2."""
+
+    def steps(m, m1):
+        return _complete(m, jnp.where(m1 > 0, m1, 1))[which]
+
+    value = jax.jit(in_blocks(lambda m, m1: (steps(m, m1),)))
 
     @jax.custom_jvp
     def call(m, m1):
         return value(m, m1)[0]
 
-    call.defjvp(lambda primals, tangents: jax.jvp(jax.jit(function), primals, tangents))
+    @call.defjvp
+    def _(primals, tangents):
+        far = primals[0] < -1
+        near = [jnp.where(far, safe, x) for x, safe in zip(primals, (0, 1), strict=True)]
+        moved = [jnp.where(far, 0, x) for x in tangents]
+        by_steps = jax.jvp(jax.jit(steps), near, moved)[1]
+        away = [jnp.where(far, x, safe) for x, safe in zip(primals, (-2, 3), strict=True)]
+        by_slope = slope(*away) * jnp.where(far, tangents[0], 0)
+        return call(*primals), by_steps + by_slope
+
     return call
 
 
-@_inside
-def _k_inside(m, m1):
-    return _complete(m, jnp.where(m1 > 0, m1, 1))[0]
-
-
-@_inside
-def _e_inside(m, m1):
-    return _complete(m, jnp.where(m1 > 0, m1, 1))[1]
+# DLMF 19.4.1 and 19.4.2.
+_k_inside = _inside(0, lambda m, m1: (_e_inside(m, m1) / m1 - _k_inside(m, m1)) / (2 * m))
+_e_inside = _inside(1, lambda m, m1: (_e_inside(m, m1) - _k_inside(m, m1)) / (2 * m))
 
 
 def _k(m, m1):
-    return _edged(_k_inside(m, m1), m1, jnp.inf, -jnp.inf)
+    return edged(_k_inside(m, m1), m1, jnp.inf, -jnp.inf)
 
 
 def _e(m, m1):
-    return _edged(_e_inside(m, m1), m1, 1.0, jnp.inf)
+    return edged(_e_inside(m, m1), m1, 1.0, jnp.inf)
 
 
 @partial(jax.custom_jvp, nondiff_argnums=(2, 3))
-def _edged(inside, m1, at_one, slope):
+def edged(inside, m1, at_one, slope):
     """`inside` for m1 > 0; at m1 = 0 `at_one`, whose derivative in m1 is `slope`; NaN with
     a NaN gradient for m1 < 0."""
     del slope
     return jnp.where(m1 > 0, inside, jnp.where(m1 == 0, at_one, jnp.nan))
 
 
-@_edged.defjvp
+@edged.defjvp
 def _edged_jvp(at_one, slope, primals, tangents):
     inside, m1 = primals
     d_inside, d_m1 = tangents
-    edge = jnp.where(m1 == 0, slope, jnp.nan)
-    return _edged(inside, m1, at_one, slope), (
+    edge = jnp.where(m1 == 0, slope, jnp.nan) * (1 - jnp.where(m1 > 0, 0, m1))
+    return edged(inside, m1, at_one, slope), (
         jnp.where(m1 > 0, 1, 0) * d_inside + jnp.where(m1 > 0, 0, edge) * d_m1
     )
 

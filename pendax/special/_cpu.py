@@ -8,8 +8,8 @@ import jax
 import jax.numpy as jnp
 from jax import lax
 
-_SMALL = 256  # elements; below, a stage of its own costs more than it saves
-_BLOCK = 16384  # elements; temporary arrays stay in the cache, and both cores get work
+_SMALL = 64  # elements; below, a stage of its own costs more than it saves
+_BLOCK = 262144  # elements; temporary arrays stay in the cache, and every core gets work
 
 
 def once(function: Callable, *arguments: Any) -> Any:
@@ -38,7 +38,7 @@ def once(function: Callable, *arguments: Any) -> Any:
 def in_blocks(function: Callable) -> Callable:
     """`function`, elementwise from arrays of one rank to a tuple of arrays, in blocks.
 
-    Whole arrays of a million elements would pass through main memory some thirty times.
+    Whole arrays would pass through main memory some thirty times.
     Not to be differentiated; a mapped axis becomes one more axis of the arrays.
     """
 

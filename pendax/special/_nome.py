@@ -4,6 +4,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
+from ._complete import edged
 from ._either import with_parameter
 from ._landen import ladder, log_nome, nome16
 
@@ -27,12 +28,11 @@ def ellipnome(m: ArrayLike | None = None, *, m1: ArrayLike | None = None) -> Flo
 
 @jax.jit
 def _nome(m: Float[Array, "..."], m1: Float[Array, "..."]) -> Float[Array, "..."]:
-    inside = (m >= 0) & (m1 >= 0)
-    far, last = m > 0.5, m1 == 0
-    p = jnp.where(inside, jnp.where(far, jnp.where(last, 0.25, m1), m), 0.25)
+    far = (m > 0.5) & (m1 > 0)
+    p = jnp.where(far, m1, jnp.where((m >= 0) & (m <= 0.5), m, 0.25))
     q16 = nome16(ladder(p))
     near_one = jnp.exp(-(jnp.pi**2) / log_nome(jnp.where(far, q16, 0.25)))
-    # At m1 = 0 the slope in m1 is -inf, as that of -sqrt(m1) is.
-    edge = 1 - jnp.sqrt(jnp.where(last, m1, 1))
-    q = jnp.where(last, edge, jnp.where(far, near_one, q16 / 16))
-    return jnp.where(inside, q, jnp.nan * jnp.where(inside, 1, m))
+    q = jnp.where(far, near_one, q16 / 16)
+    below = jnp.where(m >= 0, 1, m)
+    q = jnp.where(m >= 0, q, jnp.nan * (below * below * below))  # its derivatives NaN, too
+    return edged(q, m1, 1.0, -jnp.inf)

@@ -20,6 +20,7 @@ from ._steps import endless, foot, parity, steps
 
 FloatArray = Float[Array, "..."]
 
+LARGEST = 0.25  # of the floats: what stands for a slope beyond them
 _LITTLE = 2e-3  # u^2 max(1, |m|): below, the series has the digits, above, the ladder
 
 
@@ -52,9 +53,10 @@ def slopes(
     size = scales.size
     negative = size * size * (dn * u - sn * cn - scales.p * size * b * (dn * dn))
     reciprocal = cn * u + size * size * size * b
-    largest = jnp.where(w < 0, -1, 1) * jnp.finfo(w.dtype).max
-    b = jnp.where(endless(w, is_), 2 * largest, b * jnp.where(is_.swings, parity(turns), 1))
-    c = jnp.where(endless(w, is_), 2 * largest, c * jnp.where(is_.swings, 1, parity(turns)))
+    # Out of range, but not inf, which times a tangent of 0 is no longer 0.
+    largest = jnp.where(w < 0, -1, 1) * LARGEST * jnp.finfo(w.dtype).max
+    b = jnp.where(endless(w, is_), largest, b * jnp.where(is_.swings, parity(turns), 1))
+    c = jnp.where(endless(w, is_), largest, c * jnp.where(is_.swings, 1, parity(turns)))
     little = _little(u, m)
     ph = jnp.where(little, _series(u, m), -0.5 * jnp.where(is_.negative, negative, b))
     dn_small = is_.reciprocal & ~little
@@ -79,7 +81,8 @@ def _integral(
     sign = jnp.where(is_.ascends, -1, 1)
     # Descending, z counts the turns; ascending, they are added below.
     z = w + jnp.where(is_.ascends, 0, turns * jnp.pi)
-    z = z / jnp.where(is_.ascends, at.c, 1)
+    inverse = 1 / jnp.where(is_.ascends, at.c, 1)
+    z = z * inverse
     n = jnp.zeros_like(w)
     for rung, below, here in zip(rungs[:0:-1], climbed[:1:-1], climbed[-2:0:-1], strict=True):
         s, g, d, h = below
@@ -96,8 +99,8 @@ def _integral(
     # 1 / p meets dn and cn, of the size of its root or more, in two halves: its own
     # derivative, 1 / p^2, leaves the range of the floats where theirs does not.
     half, turned = _turned(turns, is_, scales, product)
-    of_dn = dn_c * m_over_c + (dn_c / at.c * half) * (half * turned)
-    of_cn = cn_c * m_over_c + (cn_c / at.c * half) * (half * turned)
+    of_dn = dn_c * m_over_c + (dn_c * inverse * half) * (half * turned)
+    of_cn = cn_c * m_over_c + (cn_c * inverse * half) * (half * turned)
     swinging = 0.5 * (1 + rung) * (1 + rung) * ascending - m * of_cn
     return of_dn - sign * weight * pole, swinging
 

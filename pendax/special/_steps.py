@@ -21,7 +21,7 @@ def reduce(
     # without a fused multiply-add, and beside a whole half period the two signs differ.
     w = u * factor
     turns = jnp.round(w / half_period)
-    return w - turns * jnp.where(turns == 0, 1, half_period), turns
+    return _taken_off(w, turns, half_period), turns
 
 
 def reduce_late(
@@ -35,7 +35,12 @@ def reduce_late(
     w = u * factor
     early = jnp.minimum(0.5, 8 / half_period)
     turns = jnp.sign(w) * jnp.floor(jnp.abs(w) / half_period + early)
-    return w - turns * jnp.where(turns == 0, 1, half_period), turns
+    return _taken_off(w, turns, half_period), turns
+
+
+def _taken_off(w, turns, half_period):
+    none = turns == 0  # half_period may be inf, and -0 - 0 is not -0
+    return jnp.where(none, w, w - turns * jnp.where(none, 1, half_period))
 
 
 def parity(turns: FloatArray) -> FloatArray:
