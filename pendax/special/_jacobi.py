@@ -13,7 +13,7 @@ from ._either import with_parameter
 from ._elementary import angle
 from ._kinds import kind, scales
 from ._slope import LARGEST, slopes
-from ._steps import other, parity, reduce, reduce_late, sine_and_partner
+from ._steps import legs, other, parity, ratio, reduce, reduce_late
 
 FloatArray = Float[Array, "..."]
 
@@ -156,12 +156,10 @@ def _reduced(u, m, m1):
 
 
 def _functions(w, turns, m, m1, scaled):
-    def stage(w, turns, m, m1):
-        of_m = scales(m, m1) if scaled is None else scaled
-        return lax.complex(*sine_and_partner(w, turns, kind(m, m1), of_m))
+    def stage(w, m, m1):
+        return ratio(w, kind(m, m1), scales(m, m1) if scaled is None else scaled)
 
-    pair = once(stage, w, turns, m, m1)
-    sn, partner = pair.real, pair.imag
+    sn, partner = legs(once(stage, w, m, m1), w, turns, m, m1)
     swings, rest = m1 < 0, other(sn, partner, m1)
     return sn, jnp.where(swings, rest, partner), jnp.where(swings, partner, rest)
 

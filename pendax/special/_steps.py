@@ -109,28 +109,38 @@ def steps(at: Foot, is_: Kind, scales: Scales) -> list[Step]:
     return climbed
 
 
-def sine_and_partner(
-    w: FloatArray, turns: FloatArray, is_: Kind, scales: Scales
-) -> tuple[FloatArray, FloatArray]:
-    """sn, and of cn and dn the one that passes through zero: cn for m <= 1, dn above."""
+def ratio(w: FloatArray, is_: Kind, scales: Scales) -> FloatArray:
+    """Of the legs of the right angle, sn^2 + cn^2 = 1 or m sn^2 + dn^2 = 1 where m > 1: the
+    smaller over the larger, with a minus sign where the sine is the larger.
+
+    One number from which both follow to the last digit: XLA's CPU backend would compute
+    all of this twice for two.
+    """
     at = foot(w, is_)
     s, g, d, h = steps(at, is_, scales)[-1]
-    c = at.c * g
-    # side and partner are the legs of a right angle: sn^2 + cn^2 = 1, m sn^2 + dn^2 = 1.
-    inverse = 1 / jnp.where(is_.hyperbolic, c, jnp.where(is_.negative, d, h))
-    sn = s * inverse
-    side = sn * jnp.where(is_.reciprocal, 1, scales.size)
-    partner = jnp.where(is_.ascends, jnp.where(is_.swings, d, h), c) * inverse
-    partner = jnp.where(endless(w, is_), 0, partner)
-    # The square of the hypotenuse is 1 but for the rounding of the steps: taken back.
-    unit = 1.5 - 0.5 * (side * side + partner * partner)
-    unit = unit * parity(turns)
-    sn = sn * jnp.where(is_.hyperbolic, 1, scales.size) * unit
-    return jnp.clip(sn, -1, 1), jnp.clip(partner * unit, -1, 1)
+    side = jnp.abs(s) * jnp.where(is_.reciprocal, 1, scales.size)
+    partner = jnp.where(is_.ascends, jnp.where(is_.swings, d, h), at.c * g)
+    partner = jnp.maximum(partner, 0)  # below it only by the rounding of w, at its end
+    q = jnp.minimum(side, partner) / jnp.maximum(side, partner)
+    q = jnp.where(endless(w, is_), 0, q)
+    return jnp.where(side > partner, -q, q)
+
+
+def legs(
+    q: FloatArray, w: FloatArray, turns: FloatArray, m: FloatArray, m1: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """sn, and of cn and dn the one that passes through zero: cn for m <= 1, dn above."""
+    sine_is_larger = jnp.signbit(q)  # and not q < 0: q may be -0
+    square = 1 + q * q
+    sine = jnp.copysign(jnp.where(sine_is_larger, 1, q), w)
+    cosine = jnp.where(sine_is_larger, jnp.abs(q), 1)
+    sn = parity(turns) * sine / jnp.sqrt(square * jnp.where(m1 < 0, m, 1))
+    partner = parity(turns) * cosine / jnp.sqrt(square)
+    return sn, partner
 
 
 def other(sn: FloatArray, partner: FloatArray, m1: FloatArray) -> FloatArray:
-    """What `sine_and_partner` leaves out: the root of a sum of two squares,
+    """What `legs` leaves out: the root of a sum of two squares,
     dn^2 = cn^2 + m1 sn^2 or cn^2 = dn^2 - m1 sn^2."""
     # For a small m1 the squares of two small numbers would underflow.
     many = 2.0 ** (jnp.finfo(m1.dtype).maxexp // 2 - 2)
