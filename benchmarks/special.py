@@ -189,7 +189,7 @@ def compiling(u, m) -> int:
 
 
 def small_arrays() -> int:
-    print("\n| elements | ellipj, µs | jnp.sin, µs | bar: 20 µs more |\n|---|---|---|---|")
+    print("\n| elements | ellipj, µs | jnp.sin, µs | at most 20 µs more |\n|---|---|---|---|")
     missed = 0
     for size in (1, 100, 1000):
         u = jnp.linspace(0.0, 5.0, size)

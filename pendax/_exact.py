@@ -161,7 +161,7 @@ class Motion(NamedTuple):
 
 @jax.jit
 def motion(epsilon: FloatArray, t: FloatArray, v0: FloatArray, theta0: FloatArray) -> Motion:
-    """θ (unwrapped) and θ̇ a time t after (θ0, v0); arguments of one shape and dtype.
+    """θ (unwrapped) and θ̇ a time t after (θ0, v0); arguments of one rank and dtype.
 
     S = sin(θ/2), C = cos(θ/2), W = θ̇/(2√ε) of the motion that passes the bottom at
     t = 0 with the same energy are k sn, dn, k cn of (√ε t | m), m = k² of any size.

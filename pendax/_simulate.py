@@ -4,7 +4,7 @@ import equinox as eqx
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import common, widened
+from ._arrays import aligned, common, widened
 from ._exact import motion
 from ._pendulum import Pendulum, require_free
 from ._results import Result, where
@@ -62,10 +62,13 @@ def simulate(
 
 
 def _lanes(ts: Float[Array, "..."], *lanes: ArrayLike) -> list[Float[Array, "..."]]:
-    """`ts` behind the axes of the lanes, all of one shape and dtype."""
+    """`ts` behind the axes of the lanes, all of one rank and dtype.
+
+    They are not broadcast: what depends on the lane alone is computed once for all times.
+    """
     names = ("epsilon", "v0", "theta0", "t0")
     lane = common(**dict(zip(names, lanes, strict=True)))
     shape = lane[0].shape + (1,) * ts.ndim
     behind = [jnp.reshape(x, shape) for x in lane]
     times = jnp.reshape(ts, (1,) * lane[0].ndim + ts.shape)
-    return common(ts=times, **dict(zip(names, behind, strict=True)))
+    return aligned(ts=times, **dict(zip(names, behind, strict=True)))

@@ -115,3 +115,10 @@ def test_slopes_far_out_and_beyond_the_ends():
     for f in (ellipk, ellipe):
         for m in (2.0, np.inf, np.nan):
             assert np.isnan(jax.grad(jax.grad(f))(m))
+
+
+def test_at_infinity(dtype):
+    infinity = jnp.asarray(jnp.inf, dtype)
+    assert ellipk(-infinity) == 0
+    assert ellipkm1(infinity) == 0
+    assert ellipe(-infinity) == infinity

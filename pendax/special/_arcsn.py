@@ -16,7 +16,7 @@ FloatArray = Float[Array, "..."]
 
 
 def arcsn(x: ArrayLike, m: ArrayLike | None = None, *, m1: ArrayLike | None = None) -> FloatArray:
-    """The u in [-K, K] with sn(u | m) = x, which is F(arcsin x | m).
+    """The u within a quarter period of 0 with sn(u | m) = x, which is F(arcsin x | m).
 
     **Arguments:**
 
@@ -27,8 +27,10 @@ def arcsn(x: ArrayLike, m: ArrayLike | None = None, *, m1: ArrayLike | None = No
 
     Shapes broadcast.
 
-    **Returns:** u; at |x| = 1 it is the quarter period, +-inf for m = 1, and the
-    derivative in x is infinite.  NaN (value and gradient) outside.
+    **Returns:** u; at |x| = 1 it is the quarter period K(m), +-inf for m = 1, and the
+    derivative in x is infinite.  For m > 1 the quarter period K(1/m)/sqrt(m) is reached at
+    m x^2 = 1, and the derivatives in x and m are infinite there.  NaN (value and gradient)
+    outside, be it by one rounding: clip measured values first.
 
     **Raises:** `ValueError` unless exactly one of `m` and `m1` is given.
 

@@ -16,10 +16,12 @@ def ellipk(m: ArrayLike) -> Float[Array, "..."]:
 
     **Arguments:** `m`, the parameter k^2 (not the modulus k), any shape, m <= 1.
 
-    **Returns:** K, the shape of `m`: inf at m = 1, NaN (value and gradient) above.
+    **Returns:** K, the shape of `m`: inf at m = 1, as is its derivative, NaN (value and
+    gradient) above, 0 at -inf.
 
     Near m = 1 use [`ellipkm1`][], which takes 1 - m.  Within 3 eps relative for m from
-    -1e300 to the float below 1.  DLMF 19.2.8, computed by 19.8.5 and the Landen ladder.
+    -1e300 to the float below 1 (float32: -1e36).
+    DLMF 19.2.8, computed by 19.8.5 and the Landen ladder.
     """
     (m,) = common(m=m)
     return widened(lambda m: _k(m, 1 - m))(m)
@@ -30,9 +32,10 @@ def ellipkm1(p: ArrayLike) -> Float[Array, "..."]:
 
     **Arguments:** `p`, the complement 1 - m, any shape, p >= 0.
 
-    **Returns:** K, the shape of `p`: inf at p = 0, NaN (value and gradient) below.
+    **Returns:** K, the shape of `p`: inf at p = 0, and at the subnormal numbers, which
+    XLA takes for 0; NaN (value and gradient) below; 0 at inf.
 
-    Within 3 eps relative for p from the smallest normal number to 1e300.
+    Within 3 eps relative for p from the smallest normal number to 1e300 (float32: 1e36).
     """
     (p,) = common(p=p)
     return widened(lambda p: _k(1 - p, p))(p)
@@ -43,9 +46,10 @@ def ellipe(m: ArrayLike) -> Float[Array, "..."]:
 
     **Arguments:** `m`, the parameter k^2 (not the modulus k), any shape, m <= 1.
 
-    **Returns:** E, the shape of `m`: 1 at m = 1, NaN (value and gradient) above.
+    **Returns:** E, the shape of `m`: 1 at m = 1, where the derivative is -inf, NaN (value
+    and gradient) above, inf at -inf.
 
-    Within 3 eps relative for m from -1e300 to 1.  DLMF 19.2.8.
+    Within 3 eps relative for m from -1e300 to 1 (float32: -1e36).  DLMF 19.2.8.
     """
     (m,) = common(m=m)
     return widened(lambda m: _e(m, 1 - m))(m)
@@ -138,7 +142,7 @@ def _complete(
     k = quarter * rungs.product
     s = _squares(p, rungs)
     e = jnp.where(circular, k * (1 - s), 1 / rungs.product + k * s)
-    return k / scale, e * scale
+    return jnp.where(jnp.isinf(m1), 0, k / scale), jnp.where(jnp.isinf(m1), jnp.inf, e * scale)
 
 
 def _squares(p: Float[Array, "..."], rungs: Ladder) -> Float[Array, "..."]:

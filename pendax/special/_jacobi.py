@@ -42,7 +42,8 @@ def ellipj(
     |f| + |u df/du| for |u| up to 1e6 quarter periods, m from -1e10 to 1e10, m1 of
     either sign down to 1e-300 (float32: 1e4 quarter periods, 1e-36).  Derivatives in u,
     m and m1, in every mode, are regular at m = 0 and m = 1, and the first of them within
-    50 eps of their own scale.  Past half a period, second derivatives by m1 grow like
+    50 eps of their own scale.  At |u| beyond 1/eps half periods no digit is left, and the
+    result may be NaN.  Past half a period, second derivatives by m1 grow like
     m1^-2 and leave the range of the floats for |m1| below 1e-140.
 
     DLMF 22.2; computed by 22.7 (Landen's transformations, both ways).
