@@ -1,6 +1,5 @@
 """What XLA's CPU backend needs to be fast; on other backends these are plain calls."""
 
-import functools
 from collections.abc import Callable
 from typing import Any
 
@@ -18,8 +17,9 @@ def once(function: Callable, *arguments: Any) -> Any:
     XLA's CPU backend fuses elementwise work into every array that it leads to, and so
     computes what four outputs share four times; `optimization_barrier` does not stop
     it, the branch of a conditional does.  The predicate is a constant that XLA can't
-    see through and `vmap` does not map.  Two results that share most of their work are
-    best returned as one array of complex numbers.
+    see through and `vmap` does not map.  A branch that returns several arrays computes
+    what they share several times again: best is one real number from which all follow;
+    one array of complex numbers is shared, but not vectorised.
     """
     results = jax.eval_shape(function, *arguments)
     if max(x.size for x in jax.tree.leaves(results)) < _SMALL:
@@ -42,7 +42,7 @@ def in_blocks(function: Callable) -> Callable:
     Not to be differentiated; a mapped axis becomes one more axis of the arrays.
     """
 
-    @functools.partial(jax.custom_batching.custom_vmap)
+    @jax.custom_batching.custom_vmap
     def call(*arrays):
         return lax.platform_dependent(*arrays, cpu=blocks, default=function)
 
