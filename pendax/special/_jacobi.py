@@ -44,7 +44,8 @@ def ellipj(
     m and m1, in every mode, are regular at m = 0 and m = 1, and the first of them within
     50 eps of their own scale.  At |u| beyond 1/eps half periods no digit is left, and the
     result may be NaN.  Past half a period, second derivatives by m1 grow like
-    m1^-2 and leave the range of the floats for |m1| below 1e-140.
+    m1^-2 and leave the range of the floats for |m1| below 1e-140; a Hessian in (u, m1)
+    may then be NaN throughout, while derivatives in u alone stay right.
 
     DLMF 22.2; computed by 22.7 (Landen's transformations, both ways).
     """
