@@ -5,7 +5,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
 from ._arrays import aligned, common, widened
-from ._exact import motion
+from ._motion import motion
 from ._pendulum import Pendulum, require_free
 from ._results import Result, where
 

@@ -1,6 +1,7 @@
 """sn, cn, dn and the amplitude, for every real parameter, from one ladder."""
 
 from functools import partial
+from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -11,7 +12,7 @@ from jaxtyping import Array, ArrayLike, Float
 from ._cpu import in_blocks, once
 from ._either import with_parameter
 from ._elementary import angle
-from ._kinds import kind, scales
+from ._kinds import Scales, kind, scales
 from ._slope import LARGEST, slopes
 from ._steps import legs, other, parity, ratio, reduce, reduce_late
 
@@ -64,8 +65,8 @@ def _jacobi_jvp(primals, tangents):
     u, m, m1 = primals
     du, dm, _ = tangents
     if isinstance(dm, SymbolicZero):
-        functions = jacobi(u, m, m1)
-        return functions, tuple(x * du for x in _by_u(m, *functions))
+        values = jacobi(u, m, m1)
+        return values, tuple(x * du for x in _by_u(m, *values))
     values = jacobi_and_slopes(u, m, m1)
     return values[:4], _along(_by_u(m, *values[:4]), du, _by_m(*values), dm)
 
@@ -128,45 +129,55 @@ def _along(by_u, du, by_m, dm):
 @jax.jit
 @in_blocks
 def _values(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
-    w, turns, scaled = _reduced(u, m, m1)
-    sn, cn, dn = _functions(w, turns, m, m1, scaled)
-    return sn, cn, dn, _amplitude(sn, cn, turns, m1)
+    at = functions(u, m, m1)
+    return *at.sn_cn_dn, _amplitude(at, m1)
 
 
 @jax.jit
 @in_blocks
 def _values_and_slopes(u: FloatArray, m: FloatArray, m1: FloatArray) -> tuple[FloatArray, ...]:
-    w, turns, scaled = _reduced(u, m, m1)
-    functions = _functions(w, turns, m, m1, scaled)
-
-    def stage(u, w, turns, m, m1, *functions):
-        of_m = scales(m, m1) if scaled is None else scaled
-        return lax.complex(*slopes(u, w, turns, functions, m, m1, of_m))
-
-    pair = once(stage, u, w, turns, m, m1, *functions)
-    sn, cn, dn = functions
-    return sn, cn, dn, _amplitude(sn, cn, turns, m1), pair.real, pair.imag
+    at = functions(u, m, m1)
+    return *at.sn_cn_dn, _amplitude(at, m1), *slopes_at(at, u, m, m1)
 
 
-def _reduced(u, m, m1):
-    """w and turns, and the `scales` of a parameter that many arguments share."""
-    shared = m.shape != jnp.broadcast_shapes(u.shape, m.shape)
-    scaled = once(scales, m, m1) if shared else None
-    ends = scaled[2:4] if scaled is not None else once(lambda m, m1: scales(m, m1)[2:4], m, m1)
+class Functions(NamedTuple):
+    sn_cn_dn: tuple[FloatArray, FloatArray, FloatArray]
+    w: FloatArray  # the argument less its whole half periods, of the sign of the rest
+    turns: FloatArray  # their number
+    shared: Scales | None  # the `scales` of a parameter that many arguments share
+
+
+def functions(u: FloatArray, m: FloatArray, m1: FloatArray) -> Functions:
+    """Not to be differentiated, and best called inside `in_blocks`."""
+    shared = once(scales, m, m1) if m.shape != jnp.broadcast_shapes(u.shape, m.shape) else None
+    ends = once(lambda m, m1: scales(m, m1)[2:4], m, m1) if shared is None else shared[2:4]
     pair = once(lambda *x: lax.complex(*reduce(*x)), u, *ends)
-    return pair.real, pair.imag, scaled
+    w, turns = pair.real, pair.imag
 
-
-def _functions(w, turns, m, m1, scaled):
     def stage(w, m, m1):
-        return ratio(w, kind(m, m1), scales(m, m1) if scaled is None else scaled)
+        return ratio(w, kind(m, m1), scales(m, m1) if shared is None else shared)
 
     sn, partner = legs(once(stage, w, m, m1), w, turns, m, m1)
     swings, rest = m1 < 0, other(sn, partner, m1)
-    return sn, jnp.where(swings, rest, partner), jnp.where(swings, partner, rest)
+    cn_dn = jnp.where(swings, rest, partner), jnp.where(swings, partner, rest)
+    return Functions((sn, *cn_dn), w, turns, shared)
 
 
-def _amplitude(sn, cn, turns, m1):
+def slopes_at(
+    at: Functions, u: FloatArray, m: FloatArray, m1: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """`slopes` as a stage of their own; as `functions`."""
+
+    def stage(u, w, turns, m, m1, *sn_cn_dn):
+        of_m = scales(m, m1) if at.shared is None else at.shared
+        return lax.complex(*slopes(u, w, turns, sn_cn_dn, m, m1, of_m))
+
+    pair = once(stage, u, at.w, at.turns, m, m1, *at.sn_cn_dn)
+    return pair.real, pair.imag
+
+
+def _amplitude(at: Functions, m1: FloatArray) -> FloatArray:
+    sn, cn, _ = at.sn_cn_dn
     ph = angle(sn, jnp.abs(cn))
     # A half period on, m <= 1 has turned over (sn, cn) and m > 1 swung back (sn, dn).
-    return jnp.where(m1 < 0, ph, parity(turns) * ph + turns * jnp.pi)
+    return jnp.where(m1 < 0, ph, parity(at.turns) * ph + at.turns * jnp.pi)
