@@ -75,13 +75,9 @@ def _motion_and_columns_jvp(both, primals, tangents):
     needed = both or not isinstance(tangents[3], SymbolicZero)
     theta, v, *columns = motion_and_columns(needed, *primals)
     first = _along(primals, tangents, theta, v, *columns)
-    full = [
-        jnp.zeros_like(x) if isinstance(dx, SymbolicZero) else dx
-        for x, dx in zip(primals, tangents, strict=True)
-    ]
-    _, second = jax.jvp(_columns, primals, tuple(full))
-    count = 4 if both else 2
-    return (theta, v, *columns[:count]), (*first, *second[:count])
+    kept = columns if both else columns[:2]
+    second = _columns_along(primals, tangents, theta, *kept)
+    return (theta, v, *kept), (*first, *second)
 
 
 def _along(primals, tangents, theta, v, *columns) -> Motion:
@@ -95,18 +91,51 @@ def _along(primals, tangents, theta, v, *columns) -> Motion:
     force = -2 * epsilon * sin * cos
     slopes = {1: (v, force)}
     if columns:
+        columns = [_saturated(x, theta) for x in columns]
         theta_v0, v_v0 = slopes[2] = columns[:2]
         slopes[0] = (
             (t * v - v0 * theta_v0) / (2 * epsilon),
             (v + t * force - v0 * v_v0) / (2 * epsilon),
         )
         slopes[3] = columns[2:]
-    dtheta, dv = jnp.zeros_like(theta), jnp.zeros_like(v)
+    return Motion(*_combined((theta, v), slopes, tangents))
+
+
+def _columns_along(primals, tangents, theta, *columns) -> list[FloatArray]:
+    """The same for the columns: those in t are the variational equation."""
+    epsilon, t, v0, theta0 = primals
+    sin, cos, _ = half_angle(theta)
+    stiffness = epsilon * (cos * cos - sin * sin)
+    pairs = [columns[i : i + 2] for i in range(0, len(columns), 2)]
+    by_t = [x for of_theta, of_v in pairs for x in (of_v, -stiffness * of_theta)]
+    _, along = jax.linearize(lambda v0, theta0: _columns(epsilon, t, v0, theta0), v0, theta0)
+    by_v0 = along(jnp.ones_like(v0), jnp.zeros_like(theta0))
+    # ∂θ/∂v0 has the dimension of 1/√ε, ∂v/∂θ0 that of √ε, the others none.
+    by_epsilon = [
+        (power * x + t * x_t - v0 * x_v0) / (2 * epsilon)
+        for power, x, x_t, x_v0 in zip((-1, 0, 0, 1), columns, by_t, by_v0, strict=False)
+    ]
+    by_theta0 = along(jnp.zeros_like(v0), jnp.ones_like(theta0))
+    slopes = (by_epsilon, by_t, by_v0, by_theta0)
+    return _combined(columns, [[_saturated(x, theta) for x in of] for of in slopes], tangents)
+
+
+def _combined(values, slopes, tangents) -> list[FloatArray]:
+    """Σ slope · tangent for each of the values, of the tangents that are not zero."""
+    totals = [jnp.zeros_like(x) for x in values]
     for i, dx in enumerate(tangents):
         if not isinstance(dx, SymbolicZero):
-            of_theta, of_v = slopes[i]
-            dtheta, dv = dtheta + of_theta * dx, dv + of_v * dx
-    return Motion(dtheta, dv)
+            totals = [x + slope * dx for x, slope in zip(totals, slopes[i], strict=False)]
+    return totals
+
+
+def _saturated(slope, theta):
+    """On the separatrix derivatives grow like e^(√ε t), and leave the range of the floats,
+    the second ones halfway on the way to their value: a large number then, with which
+    products by t, ε and v0 are finite yet, for inf times 0 is NaN."""
+    largest = 2.0**-40 * jnp.finfo(theta.dtype).max
+    within = jnp.where(jnp.isfinite(slope), jnp.clip(slope, -largest, largest), largest)
+    return jnp.where(jnp.isnan(theta), theta, within)
 
 
 @jax.jit
@@ -185,7 +214,7 @@ def _matrix(start: Start, s, c, d, of_ph, of_dn):
     theta_m = cos * sin_m - sin * cos_m
     theta_w = s * (cos * c0 + sin * c * s0)
     theta_0 = cos * (c0 * c * d - s * w0 * s0) + sin * (d * s0 + s * c * c0 * w0)
-    w_0 = s * (d * (s0 - c0) * (s0 + c0) + 2 * w * s * s0 * c0)
+    w_0 = s * (d * (s0 * s0 - c0 * c0) + 2 * w * s * s0 * c0)
     return (
         (theta_w + 2 * w0 * theta_m) * (unit / root),
         (c + 2 * w0 * w_m) * unit,

@@ -21,6 +21,16 @@ def state(x):
     return jnp.stack([run.theta, run.v])
 
 
+def twice_forward(f):
+    return jax.jacfwd(jax.jacfwd(f))
+
+
+@lru_cache
+def compiled(mode=None):
+    """Of many rows at once; compiled once for all tags."""
+    return jax.jit(jax.vmap(mode(state) if mode else state))
+
+
 @lru_cache
 def references_of(tag, dtype, order):
     rows = starts(dtype, SIZE)[tag]
@@ -43,7 +53,7 @@ def units(row):
 def test_values(tag, dtype):
     """16 eps × scale; on the separatrix at ε = 1 from the bottom that of |v0| − 2, not v0."""
     rows, true = references_of(tag, dtype.name, 1)
-    got = np.asarray(jax.jit(jax.vmap(state))(jnp.asarray(rows, dtype)), float)
+    got = np.asarray(compiled()(jnp.asarray(rows, dtype)), float)
     for row, values, d in zip(rows, got, true, strict=True):
         for f in range(2):
             scale = magnitude(row, d, f)
@@ -60,7 +70,7 @@ def test_first_derivatives(tag, dtype):
     rows, true = references_of(tag, dtype.name, 2)
     x = jnp.asarray(rows, dtype)
     forward, reverse = (
-        np.asarray(jax.jit(jax.vmap(mode(state)))(x), float) for mode in (jax.jacfwd, jax.jacrev)
+        np.asarray(compiled(mode)(x), float) for mode in (jax.jacfwd, jax.jacrev)
     )
     loose = np.finfo(dtype).eps / np.finfo("float64").eps
     loose = 1 if loose == 1 else loose / 27  # 1e-11 is 45,000 eps of float64, 2e-4 1,700
@@ -78,9 +88,8 @@ def test_first_derivatives(tag, dtype):
 def test_second_derivatives(tag):
     """1e-8 × scale, that of a derivative h being |h| + Σ |x ∂h/∂x| + scale(θ)/|x y|."""
     rows, true = references_of(tag, "float64", 2)
-    both = []
-    for mode in (jax.jacfwd(jax.jacfwd(state)), jax.hessian(state)):
-        both.append(np.asarray(jax.jit(jax.vmap(mode))(jnp.asarray(rows))))
+    modes = (twice_forward, jax.hessian) if tag == "anywhere" else (jax.hessian,)
+    both = [np.asarray(compiled(mode)(jnp.asarray(rows))) for mode in modes]
     for k, (row, d) in enumerate(zip(rows, true, strict=True)):
         # In t alone the equation of motion says it all.
         moved = [references.derivatives(moved_by(row, i), 2) for i in (0, 2, 3)]
@@ -102,14 +111,14 @@ def moved_by(row, i):
 
 
 @pytest.mark.parametrize("epsilon", [1.0, 4.0, 9.81])
-@pytest.mark.parametrize("theta0", [0.0, np.pi, -1.0])
-@pytest.mark.parametrize("v0", [0.0, 1.0, 2.0, 3.0])
-def test_nowhere_nan(epsilon, theta0, v0, dtype):
+def test_nowhere_nan(epsilon, dtype):
     """Equilibria, the separatrix and times beyond every exponential included."""
-    v0 = v0 * np.sqrt(epsilon)
-    for t in (0.0, 1e-30, 1.0, 50.0, 800.0, 1e7):
-        x = jnp.asarray([epsilon, t, v0, theta0], dtype)
-        assert jnp.isfinite(state(x)).all()
-        for mode in (jax.jacfwd, jax.jacrev):
-            assert jnp.isfinite(mode(state)(x)).all(), (t, mode)
-        assert not jnp.isnan(jax.hessian(state)(x)).any(), t
+    x = [
+        (epsilon, t, v0 * np.sqrt(epsilon), theta0)
+        for t in (0.0, 1e-30, 1.0, 50.0, 300.0, 800.0, 1e7)
+        for v0 in (0.0, 1.0, 2.0, 3.0)
+        for theta0 in (0.0, np.pi, -1.0)
+    ]
+    x = jnp.asarray(x, dtype)
+    for mode in (None, jax.jacfwd, jax.jacrev, jax.hessian):
+        assert jnp.isfinite(compiled(mode)(x)).all(), mode
