@@ -11,10 +11,15 @@ from ._exact import amplitude as amplitude
 from ._exact import frequency as frequency
 from ._exact import period as period
 from ._pendulum import Pendulum as Pendulum
-from ._pendulum import energy as energy
+from ._energy import energy as energy
+from ._energy import potential as potential
+from ._energy import slack_angle as slack_angle
+from ._energy import tension as tension
+from ._energy import velocity as velocity
 from ._results import Result as Result
 from ._simulate import Trajectory as Trajectory
 from ._simulate import simulate as simulate
+from ._time_to import time_to as time_to
 from .fit import Cycles as Cycles
 from .fit import Fit as Fit
 from .fit import cycles as cycles

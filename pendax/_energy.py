@@ -1,111 +1,102 @@
-"""The two numbers that vanish where the motion changes kind,
+"""What a state (θ, v) is worth: energies, the phase curve, the tension of the rod."""
 
-    rise = v0² + 4ε sin²(θ0/2) = 4ε m     twice the energy; 0 at rest at the bottom
-    gap  = 4ε cos²(θ0/2) − v0² = 4ε m1    0 on the separatrix, negative in rotation
-
-formed without cancellation, from the floats as given.  m = sin²(θ_max/2) in libration;
-m1 = 1 − m is never computed as such.
-"""
-
-from typing import NamedTuple
-
-import jax
 import jax.numpy as jnp
-from jax import lax
-from jaxtyping import Array, Float
+import numpy as np
+from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import difference_of_products
-from .special._elementary import sin_cos
-from .special._steps import parity
+from ._arrays import common, require, widened
+from ._gap import half_angle, rise_and_gap
+from ._pendulum import Pendulum, require_free
 
 FloatArray = Float[Array, "..."]
 
-# π/2: the first part has 33 digits (float32: 8), the second the next 33 (11).
-_QUARTER = {
-    "float64": (1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21),
-    "float32": (1.5703125, 0.00048375129699707031, 7.549789954891882e-08),
-}
 
+def energy(pendulum: Pendulum, theta: ArrayLike, v: ArrayLike) -> FloatArray:
+    """½ v² + ε (1 − cos θ), per unit of m l², 1/s²; damping and torque are not in it.
 
-class HalfAngle(NamedTuple):
-    """Sine and cosine of θ/2 − nπ, cosine >= 0, and n: the number of the well."""
-
-    sin: FloatArray
-    cos: FloatArray
-    well: FloatArray
-
-
-@jax.custom_jvp
-def half_angle(theta: FloatArray) -> HalfAngle:
-    """To the last digit of the float as given, θ near odd multiples of π included.
-
-    θ/2 less quarter turns, π/2 in three parts of which the first times their number is
-    exact up to |θ| of 10⁶ (float32: 10³); beyond, to one eps of θ.  XLA's own sin and cos
-    are ten times slower, since they call a scalar library.
+    `theta` in rad, `v` in rad/s; shapes broadcast.
     """
-    parts = _QUARTER[jnp.dtype(theta.dtype).name]
-    half = 0.5 * theta
-    quarters = jnp.round(half * (2 / jnp.pi))
-    rest = half
-    for part in parts:
-        rest = rest - quarters * part
-    sin, cos = sin_cos(jnp.clip(rest, -0.8, 0.8))
-    odd = parity(quarters) < 0
-    side = jnp.where(rest < 0, -1, 1)
-    return HalfAngle(
-        jnp.where(odd, -side * cos, sin),
-        jnp.where(odd, jnp.abs(sin), cos),
-        0.5 * (quarters + jnp.where(odd, side, 0)),
-    )
+    theta, v, epsilon = common(theta=theta, v=v, epsilon=pendulum.epsilon)
+    return widened(lambda v, *x: 0.5 * v * v + _potential(*x))(v, theta, epsilon)
 
 
-@half_angle.defjvp
-def _half_angle_jvp(primals, tangents):
-    at = half_angle(*primals)
-    slopes = 0.5 * at.cos * tangents[0], -0.5 * at.sin * tangents[0]
-    return at, HalfAngle(*slopes, jnp.zeros_like(at.well))
+def potential(pendulum: Pendulum, theta: ArrayLike) -> FloatArray:
+    """ε (1 − cos θ), per unit of m l², 1/s²; the torque is not in it.
+
+    `theta` in rad; shapes broadcast.  Computed as 2 ε sin²(θ/2): 1 − cos θ loses the
+    digits of a small θ.  Suzuki & Suzuki §1.2.
+    """
+    return widened(_potential)(*common(theta=theta, epsilon=pendulum.epsilon))
 
 
-def rise_and_gap(
-    epsilon: FloatArray, v0: FloatArray, theta0: FloatArray
-) -> tuple[FloatArray, FloatArray]:
-    """v0² + 4ε sin²(θ0/2) and 4ε cos²(θ0/2) − v0²."""
-    sin, cos, _ = half_angle(theta0)
+def _potential(theta: FloatArray, epsilon: FloatArray) -> FloatArray:
+    sin = half_angle(theta).sin
+    return 2 * epsilon * sin * sin
+
+
+def velocity(pendulum: Pendulum, theta: ArrayLike, energy: ArrayLike) -> FloatArray:
+    """The phase curve v(θ; E) = √(2 (E − ε (1 − cos θ))) ≥ 0, rad/s.
+
+    **Arguments:** `theta`, rad; `energy` E as [`energy`][] gives it, 1/s².  Shapes
+    broadcast.  The separatrix is E = 2ε, where v = 2√ε |cos(θ/2)|.
+
+    **Returns:** v; the other half of the curve is −v.  NaN (value and gradient) where the
+    energy does not reach; 0 with an infinite derivative at a turning point.
+
+    The root is taken of 2E − 4ε + 4ε cos²(θ/2) where that cancels less.  Suzuki & Suzuki
+    §1.3; the Spanish source's (3.1), whose box has its outer root too far.
+    """
+    arrays = common(theta=theta, energy=energy, epsilon=pendulum.epsilon)
+    return widened(_velocity)(*arrays)
+
+
+def _velocity(theta: FloatArray, energy: FloatArray, epsilon: FloatArray) -> FloatArray:
+    sin, cos, _ = half_angle(theta)
     four = 4 * epsilon
-    return v0 * v0 + four * sin * sin, gap_of(four, v0, sin, cos)
+    low = 2 * energy - four * sin * sin
+    high = (2 * energy - four) + four * cos * cos
+    return jnp.sqrt(jnp.where(cos < jnp.abs(sin), high, low))
 
 
-@jax.custom_jvp
-def gap_of(four: FloatArray, v0: FloatArray, sin: FloatArray, cos: FloatArray) -> FloatArray:
-    """four cos² − v0², sin² + cos² = 1, to the last digit of the floats as given.
+def tension(
+    pendulum: Pendulum, theta: ArrayLike, v: ArrayLike, mass: ArrayLike, length: ArrayLike
+) -> FloatArray:
+    """Tension of the rod N = m (l v² + g cos θ), g = ε l, in newtons.
 
-    v0² is an error-free product: right also where √ε is no float, and
-    (2√ε − v0)(2√ε + v0) would put the separatrix one float off.  cos² is used where it
-    is the smaller of the two, else 1 − sin²: each loses nothing near its own zero.
+    **Arguments:** `theta`, rad; `v`, rad/s; `mass` m, kg; `length` l, m.  Shapes broadcast.
+
+    **Returns:** N, negative where the rod pushes: there a string would be slack, from
+    [`slack_angle`][] on.
+
+    **Raises:** `ValueError` for m or l ≤ 0.  The Spanish source's §1.1 (radial equation).
     """
-    bottom = difference_of_products(four, jnp.ones_like(v0), v0, v0) - four * sin * sin
-    top = difference_of_products(four * cos, cos, v0, v0)
-    return jnp.where(cos * cos < sin * sin, top, bottom)
+    for name, x in (("mass", mass), ("length", length)):
+        require(name, x, "positive", lambda x: (x > 0) & np.isfinite(x))
+    theta, v, epsilon, mass, length = common(
+        theta=theta, v=v, epsilon=pendulum.epsilon, mass=mass, length=length
+    )
+    sin, cos, _ = widened(half_angle)(theta)
+    return mass * length * (v * v + epsilon * (cos - sin) * (cos + sin))
 
 
-@gap_of.defjvp
-def _gap_jvp(primals, tangents):
-    # Differentiating `bottom` would send an infinite slope at gap = 0 through sin * sin.
-    four, v0, sin, cos = primals
-    d_four, d_v0, _, d_cos = tangents
-    slope = cos * cos * d_four + 2 * four * cos * d_cos - 2 * v0 * d_v0
-    return gap_of(four, v0, sin, cos), slope
+def slack_angle(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> FloatArray:
+    """The angle from the bottom at which a string would go slack, rad.
 
+    **Arguments:** as for [`frequency`][]: the undamped, untorqued motion through (θ0, v0).
 
-def scaled(epsilon: FloatArray, v0: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
-    """(unit, ε/unit², v0/unit), unit a power of two near the larger of √ε and |v0|.
+    **Returns:** θ in (π/2, π), where v² + ε cos θ = 0; NaN if a string stays tight, for
+    E = ½v² + ε (1 − cos θ) up to ε and from 5ε/2 on.
 
-    Exact, and neither v0² nor a product of two velocities can then over- or underflow.
+    cos θ = ⅔ (1 − E/ε), taken as θ = 2 atan2(√(ε + 2E), √(5ε − 2E)).
     """
-    speed = jnp.maximum(jnp.sqrt(epsilon), jnp.abs(v0))
-    _, exponent = jnp.frexp(lax.stop_gradient(speed))
-    limit = jnp.finfo(v0.dtype).maxexp - 24  # both 2^±limit are normal numbers
-    exponent = jnp.clip(exponent, -limit, limit)
-    one = jnp.ones_like(v0)
-    unit, inverse = jnp.ldexp(one, exponent), jnp.ldexp(one, -exponent)
-    return unit, epsilon * inverse * inverse, v0 * inverse
+    require_free(pendulum, "the angle at which a string goes slack")
+    arrays = common(epsilon=pendulum.epsilon, v0=v0, theta0=theta0)
+    return widened(_slack_angle)(*arrays)
+
+
+def _slack_angle(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray) -> FloatArray:
+    rise, gap = rise_and_gap(epsilon, v0, theta0)
+    top = epsilon + gap  # 5ε − 2E, from the side on which it vanishes
+    slack = (rise > 2 * epsilon) & (top > 0)
+    top, bottom = (jnp.sqrt(jnp.where(slack, x, jnp.nan)) for x in (top, epsilon + rise))
+    return 2 * jnp.arctan2(bottom, top)

@@ -5,7 +5,7 @@ import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
 from ._arrays import common, widened
-from ._energy import rise_and_gap, scaled
+from ._gap import gap_of, half_angle, hypotenuse, rise_and_gap, scaled
 from ._pendulum import Pendulum, require_free
 from .special._agm import agm
 
@@ -32,7 +32,7 @@ def frequency(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> Flo
     """
     require_free(pendulum, "its frequency")
     arrays = common(epsilon=pendulum.epsilon, v0=v0, theta0=theta0)
-    return widened(_frequency)(*arrays)
+    return widened(angular_frequency)(*arrays)
 
 
 def period(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> FloatArray:
@@ -57,7 +57,7 @@ def amplitude(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> Flo
 
 
 @jax.jit
-def _frequency(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray) -> FloatArray:
+def angular_frequency(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray) -> FloatArray:
     unit, epsilon, v0 = scaled(jnp.where(epsilon > 0, epsilon, jnp.nan), v0)
     rise, gap = rise_and_gap(epsilon, v0, theta0)
     rotates = gap < 0
@@ -69,11 +69,11 @@ def _frequency(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray) -> Float
 @jax.jit
 def _amplitude(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray) -> FloatArray:
     _, epsilon, v0 = scaled(jnp.where(epsilon > 0, epsilon, jnp.nan), v0)
-    rise, gap = rise_and_gap(epsilon, v0, theta0)
-    rest, rotates = rise == 0, gap < 0
-    up = jnp.where(rest, 0, jnp.sqrt(jnp.where(rest, 1, rise)))
-    angle = 2 * jnp.arctan2(up, jnp.sqrt(jnp.where(rotates, 1, gap)))
-    return jnp.where(rotates, jnp.inf, angle)
+    sin, cos, _ = half_angle(theta0)
+    gap = gap_of(4 * epsilon, v0, sin, cos)
+    up = hypotenuse(v0, 2 * jnp.sqrt(epsilon) * sin)
+    rotates = gap < 0
+    return jnp.where(rotates, jnp.inf, 2 * jnp.arctan2(up, jnp.sqrt(jnp.where(rotates, 1, gap))))
 
 
 @jax.custom_jvp

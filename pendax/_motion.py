@@ -21,7 +21,7 @@ import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
-from ._energy import gap_of, half_angle
+from ._gap import gap_of, half_angle
 from .special._cpu import in_blocks
 from .special._elementary import angle
 from .special._jacobi import Functions, functions, jacobi_and_slopes, slopes_at

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import NUMBERS, common, floating, require
+from ._arrays import NUMBERS, floating, require
 
 
 class Pendulum(eqx.Module):
@@ -44,6 +44,37 @@ class Pendulum(eqx.Module):
         self.beta = _inexact(beta)
         self.tau = _as_pytree(tau) if callable(tau) else _inexact(tau)
 
+    @classmethod
+    def from_si(
+        cls,
+        length: ArrayLike,
+        gravity: ArrayLike = 9.80665,
+        mass: ArrayLike | None = None,
+        damping: ArrayLike | None = None,
+        torque: ArrayLike | Callable | None = None,
+    ) -> "Pendulum":
+        """The scene of a point mass on a rod: ε = g/l, β = η/(m l²), τ = T/(m l²).
+
+        **Arguments:** `length` l, m; `gravity` g, m/s²; `mass` m, kg, needed with either
+        of the next two; `damping` η, N m s; `torque` T, N m, a number or a function of time.
+
+        **Raises:** `ValueError` for l, g or m ≤ 0, η < 0, or a missing mass.
+        Suzuki & Suzuki §1.1, §7.1, §8.1.
+        """
+        for name, x in (("length", length), ("gravity", gravity), ("mass", mass)):
+            require(name, x, "positive", lambda x: (x > 0) & np.isfinite(x))
+        require("damping", damping, "zero or positive", lambda x: (x >= 0) & np.isfinite(x))
+        if mass is None and not (damping is None and torque is None):
+            raise ValueError("Argument `mass` must be given with `damping` or `torque`.")
+        epsilon = _inexact(gravity) / _inexact(length)
+        if mass is None:
+            return cls(epsilon)
+        inertia = _inexact(mass) * _inexact(length) ** 2
+        beta = None if damping is None else _inexact(damping) / inertia
+        if callable(torque):
+            return cls(epsilon, beta, jax.tree_util.Partial(_over, _as_pytree(torque), inertia))
+        return cls(epsilon, beta, None if torque is None else _inexact(torque) / inertia)
+
     @property
     def is_free(self) -> bool:
         """Whether there is neither damping nor torque: the scene with a closed form."""
@@ -65,6 +96,10 @@ def _as_pytree(tau: Callable) -> Callable:
     return jax.tree_util.Partial(tau) if any(leaf is tau for leaf in leaves) else tau
 
 
+def _over(torque: Callable, inertia: Float[Array, "..."], t: Float[Array, "..."]):
+    return torque(t) / inertia
+
+
 def require_free(pendulum: object, what: str) -> None:
     """ValueError for a scene with damping or torque, or for no scene at all."""
     if not isinstance(pendulum, Pendulum):
@@ -77,13 +112,3 @@ def require_free(pendulum: object, what: str) -> None:
             f"Argument `pendulum` must have neither damping nor torque for {what}, "
             f"but got one with {' and '.join(f'`{name}`' for name in terms)}."
         )
-
-
-def energy(pendulum: Pendulum, theta: ArrayLike, v: ArrayLike) -> Float[Array, "..."]:
-    """½ v² + ε (1 − cos θ), per unit of m l², 1/s²; damping and torque are not in it.
-
-    The potential is computed as 2 ε sin²(θ/2): 1 − cos θ loses the digits of a small θ.
-    Shapes broadcast.
-    """
-    theta, v, epsilon = common(theta=theta, v=v, epsilon=pendulum.epsilon)
-    return 0.5 * v * v + 2 * epsilon * jnp.sin(0.5 * theta) ** 2

@@ -68,24 +68,31 @@ def _squares(x, m, m1):
 
 @jax.jit
 def _value(x: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
-    """Down the ladder: with h = 1 below, Gauss's step is
+    cn2, dn2 = _squares(x, m, m1)
+    return inverse(x, jnp.sqrt(cn2), jnp.sqrt(dn2), m, m1)
+
+
+def inverse(
+    sn: FloatArray, cn: FloatArray, dn: FloatArray, m: FloatArray, m1: FloatArray
+) -> FloatArray:
+    """The u within a quarter period of 0 with these functions, cn and dn >= 0.
+
+    Down the ladder: with h = 1 below, Gauss's step is
 
     s' = 2 s / ((1 + l) (h + d)),  c' = 2 c / ((h + d) d'),  d' = sqrt(1 + l^2 s'^2),
 
     with the sign of l^2 turned where it descends to the circular functions; there u is
-    the angle of (s, c) at the foot, else asinh s.
+    the angle of (s, c) at the foot, else asinh s.  Not to be differentiated.
     """
     is_, of_m = kind(m, m1), scales(m, m1)
     rungs, _ = climb(of_m.p, of_m.square)
-    cn2, dn2 = _squares(x, m, m1)
-    cn, dn = jnp.sqrt(cn2), jnp.sqrt(dn2)
     scale = jnp.where(is_.negative | is_.reciprocal, 1 / of_m.size, 1)
 
     # sn, cn, dn of the ladder's own parameter, over h.
-    s = scale * x
+    s = scale * sn
     c = jnp.where(is_.reciprocal, dn, cn)
     d = jnp.where(is_.ascends, jnp.where(is_.negative, 1, dn), jnp.where(is_.reciprocal, cn, dn))
-    endless = cn2 + dn2 == 0
+    endless = (cn == 0) & (dn == 0)
     h = jnp.where(is_.ascends & ~endless, cn, 1)
     sign = jnp.where(is_.ascends, 1, -1)
     for rung in rungs:
@@ -93,4 +100,4 @@ def _value(x: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
         d, h = jnp.sqrt(1 + sign * (rung * s) * (rung * s)), 1
         c = c / d
     w = jnp.where(is_.ascends, jnp.arcsinh(s), jnp.arctan2(jnp.where(is_.ascends, 0, s), c))
-    return jnp.where(endless, x * jnp.inf, w / of_m.factor)
+    return jnp.where(endless, sn * jnp.inf, w / of_m.factor)

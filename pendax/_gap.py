@@ -1,0 +1,128 @@
+"""The two numbers that vanish where the motion changes kind,
+
+    rise = v0² + 4ε sin²(θ0/2) = 4ε m     twice the energy; 0 at rest at the bottom
+    gap  = 4ε cos²(θ0/2) − v0² = 4ε m1    0 on the separatrix, negative in rotation
+
+formed without cancellation, from the floats as given.  m = sin²(θ_max/2) in libration;
+m1 = 1 − m is never computed as such.
+"""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Float
+
+from ._arrays import difference_of_products
+from .special._elementary import sin_cos
+from .special._steps import parity
+
+FloatArray = Float[Array, "..."]
+
+# π/2: the first part has 33 digits (float32: 8), the second the next 33 (11).
+_QUARTER = {
+    "float64": (1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21),
+    "float32": (1.5703125, 0.00048375129699707031, 7.549789954891882e-08),
+}
+
+
+class HalfAngle(NamedTuple):
+    """Sine and cosine of θ/2 − nπ, cosine >= 0, and n: the number of the well."""
+
+    sin: FloatArray
+    cos: FloatArray
+    well: FloatArray
+
+
+@jax.custom_jvp
+def half_angle(theta: FloatArray) -> HalfAngle:
+    """To the last digit of the float as given, θ near odd multiples of π included.
+
+    θ/2 less quarter turns, π/2 in three parts of which the first times their number is
+    exact up to |θ| of 10⁶ (float32: 10³); beyond, to one eps of θ.  XLA's own sin and cos
+    are ten times slower, since they call a scalar library.
+    """
+    parts = _QUARTER[jnp.dtype(theta.dtype).name]
+    half = 0.5 * theta
+    quarters = jnp.round(half * (2 / jnp.pi))
+    rest = half
+    for part in parts:
+        rest = rest - quarters * part
+    sin, cos = sin_cos(jnp.clip(rest, -0.8, 0.8))
+    odd = parity(quarters) < 0
+    side = jnp.where(rest < 0, -1, 1)
+    return HalfAngle(
+        jnp.where(odd, -side * cos, sin),
+        jnp.where(odd, jnp.abs(sin), cos),
+        0.5 * (quarters + jnp.where(odd, side, 0)),
+    )
+
+
+@half_angle.defjvp
+def _half_angle_jvp(primals, tangents):
+    at = half_angle(*primals)
+    slopes = 0.5 * at.cos * tangents[0], -0.5 * at.sin * tangents[0]
+    return at, HalfAngle(*slopes, jnp.zeros_like(at.well))
+
+
+def rise_and_gap(
+    epsilon: FloatArray, v0: FloatArray, theta0: FloatArray
+) -> tuple[FloatArray, FloatArray]:
+    """v0² + 4ε sin²(θ0/2) and 4ε cos²(θ0/2) − v0²."""
+    sin, cos, _ = half_angle(theta0)
+    four = 4 * epsilon
+    return v0 * v0 + four * sin * sin, gap_of(four, v0, sin, cos)
+
+
+@jax.custom_jvp
+def gap_of(four: FloatArray, v0: FloatArray, sin: FloatArray, cos: FloatArray) -> FloatArray:
+    """four cos² − v0², sin² + cos² = 1, to the last digit of the floats as given.
+
+    v0² is an error-free product: right also where √ε is no float, and
+    (2√ε − v0)(2√ε + v0) would put the separatrix one float off.  cos² is used where it
+    is the smaller of the two, else 1 − sin²: each loses nothing near its own zero.
+    """
+    bottom = difference_of_products(four, jnp.ones_like(v0), v0, v0) - four * sin * sin
+    top = difference_of_products(four * cos, cos, v0, v0)
+    return jnp.where(cos * cos < sin * sin, top, bottom)
+
+
+@gap_of.defjvp
+def _gap_jvp(primals, tangents):
+    # Differentiating `bottom` would send an infinite slope at gap = 0 through sin * sin.
+    four, v0, sin, cos = primals
+    d_four, d_v0, _, d_cos = tangents
+    slope = cos * cos * d_four + 2 * four * cos * d_cos - 2 * v0 * d_v0
+    return gap_of(four, v0, sin, cos), slope
+
+
+@jax.custom_jvp
+def hypotenuse(x: FloatArray, y: FloatArray) -> FloatArray:
+    """√(x² + y²) without over- or underflow; its derivative at 0, where it has a kink, is 0."""
+    large = jnp.maximum(jnp.abs(x), jnp.abs(y))
+    at_zero = large == 0
+    quotient = jnp.minimum(jnp.abs(x), jnp.abs(y)) / jnp.where(at_zero, 1, large)
+    return large * jnp.sqrt(1 + quotient * quotient)
+
+
+@hypotenuse.defjvp
+def _hypotenuse_jvp(primals, tangents):
+    (x, y), (dx, dy) = primals, tangents
+    size = hypotenuse(x, y)
+    divisor = jnp.where(size == 0, 1, size)
+    return size, (x / divisor) * dx + (y / divisor) * dy
+
+
+def scaled(epsilon: FloatArray, v0: FloatArray) -> tuple[FloatArray, FloatArray, FloatArray]:
+    """(unit, ε/unit², v0/unit), unit a power of two near the larger of √ε and |v0|.
+
+    Exact, and neither v0² nor a product of two velocities can then over- or underflow.
+    """
+    speed = jnp.maximum(jnp.sqrt(epsilon), jnp.abs(v0))
+    _, exponent = jnp.frexp(lax.stop_gradient(speed))
+    limit = jnp.finfo(v0.dtype).maxexp - 24  # both 2^±limit are normal numbers
+    exponent = jnp.clip(exponent, -limit, limit)
+    one = jnp.ones_like(v0)
+    unit, inverse = jnp.ldexp(one, exponent), jnp.ldexp(one, -exponent)
+    return unit, epsilon * inverse * inverse, v0 * inverse
