@@ -10,6 +10,8 @@ from ._critical import fit_critical_law as fit_critical_law
 from ._exact import amplitude as amplitude
 from ._exact import frequency as frequency
 from ._exact import period as period
+from ._harmonics import Harmonics as Harmonics
+from ._harmonics import harmonics as harmonics
 from ._pendulum import Pendulum as Pendulum
 from ._energy import energy as energy
 from ._energy import potential as potential
@@ -19,6 +21,7 @@ from ._energy import velocity as velocity
 from ._results import Result as Result
 from ._simulate import Trajectory as Trajectory
 from ._simulate import simulate as simulate
+from ._spectrum import power_spectrum as power_spectrum
 from ._time_to import time_to as time_to
 from .fit import Cycles as Cycles
 from .fit import Fit as Fit

@@ -64,18 +64,21 @@ def climb(
 
 
 def nome16(rungs: Ladder) -> Float[Array, "..."]:
-    """16 q(p), of the sign of p; q = exp(-pi K(1 - p) / K(p)) in size.
+    """16 q(p), of the sign of p; q = exp(-pi K(1 - p) / K(p)) in size.  16 q instead of q
+    keeps p down to the smallest normal number from underflowing."""
+    return rungs.p * nome16_over_p(rungs)
 
-    q = e + 2 e^5 + 15 e^9 + 150 e^13, e = (1 - b) / (2 (1 + b)), b = (1 - p)^(1/4)
+
+def nome16_over_p(rungs: Ladder) -> Float[Array, "..."]:
+    """q = e + 2 e^5 + 15 e^9 + 150 e^13, e = (1 - b) / (2 (1 + b)), b = (1 - p)^(1/4)
     (DLMF 19.5.7), e = p / (2 (1 + b^2) (1 + b)^2) without its subtraction;
-    |e| <= 0.0432, and the first omitted term, 1707 e^16, is 3e-19.  16 q instead of q
-    keeps p down to the smallest normal number from underflowing.
+    |e| <= 0.0432, and the first omitted term, 1707 e^16, is 3e-19.
     """
     b = jnp.sqrt(rungs.root)
-    q16 = 8 * rungs.p / ((1 + rungs.root) * ((1 + b) * (1 + b)))
-    e = q16 / 16
+    slope = 8 / ((1 + rungs.root) * ((1 + b) * (1 + b)))
+    e = rungs.p * slope / 16
     e4 = (e * e) * (e * e)
-    return q16 * (1 + e4 * (2 + e4 * (15 + 150 * e4)))
+    return slope * (1 + e4 * (2 + e4 * (15 + 150 * e4)))
 
 
 def log_nome(q16: Float[Array, "..."]) -> Float[Array, "..."]:
