@@ -10,6 +10,8 @@ from ._critical import fit_critical_law as fit_critical_law
 from ._exact import amplitude as amplitude
 from ._exact import frequency as frequency
 from ._exact import period as period
+from ._geometry import Geometry as Geometry
+from ._geometry import geometry as geometry
 from ._harmonics import Harmonics as Harmonics
 from ._harmonics import harmonics as harmonics
 from ._pendulum import Pendulum as Pendulum
@@ -21,6 +23,9 @@ from ._energy import velocity as velocity
 from ._results import Result as Result
 from ._simulate import Trajectory as Trajectory
 from ._simulate import simulate as simulate
+from ._small_angle import SmallAngle as SmallAngle
+from ._small_angle import period_series as period_series
+from ._small_angle import small_angle as small_angle
 from ._spectrum import power_spectrum as power_spectrum
 from ._time_to import time_to as time_to
 from .fit import Cycles as Cycles

@@ -11,3 +11,6 @@ from ._complete import ellipk as ellipk
 from ._complete import ellipkm1 as ellipkm1
 from ._jacobi import ellipj as ellipj
 from ._nome import ellipnome as ellipnome
+from ._series import Approximation as Approximation
+from ._series import ellipe_series as ellipe_series
+from ._series import ellipk_series as ellipk_series
