@@ -35,7 +35,7 @@ from .fit import fit_frequency as fit_frequency
 
 
 def __getattr__(name: str):
-    # Matplotlib is loaded when a plot is asked for, not before.
-    if name in ("plot", "figures"):
+    # Matplotlib and diffrax are loaded when they are asked for, not before.
+    if name in ("plot", "figures", "solvers"):
         return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

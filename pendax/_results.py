@@ -12,6 +12,8 @@ class Result(eqx.Enumeration):
     not_a_number = "An argument is NaN or infinite, or a parameter is outside its domain."
     too_few_points = "A fit needs two or more points on each side."
     not_converged = "The iteration did not converge."
+    too_many_steps = "The solver took `max_steps` steps and was not at the last time yet."
+    solver_failed = "The solver gave up: its step became too small, or a number infinite."
 
 
 def where(condition: Bool[Array, "*lanes"], then: Result, otherwise: Result) -> Result:
