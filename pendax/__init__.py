@@ -7,6 +7,11 @@ from ._critical import CriticalLaw as CriticalLaw
 from ._critical import CriticalSide as CriticalSide
 from ._critical import critical_law as critical_law
 from ._critical import fit_critical_law as fit_critical_law
+from ._energy import energy as energy
+from ._energy import potential as potential
+from ._energy import slack_angle as slack_angle
+from ._energy import tension as tension
+from ._energy import velocity as velocity
 from ._exact import amplitude as amplitude
 from ._exact import frequency as frequency
 from ._exact import period as period
@@ -15,11 +20,6 @@ from ._geometry import geometry as geometry
 from ._harmonics import Harmonics as Harmonics
 from ._harmonics import harmonics as harmonics
 from ._pendulum import Pendulum as Pendulum
-from ._energy import energy as energy
-from ._energy import potential as potential
-from ._energy import slack_angle as slack_angle
-from ._energy import tension as tension
-from ._energy import velocity as velocity
 from ._results import Result as Result
 from ._simulate import Trajectory as Trajectory
 from ._simulate import simulate as simulate

@@ -13,6 +13,7 @@ The rejected forms: 2 arcsin(k sn) loses half the digits near θ = ±π; the tex
 formula above v0 = 2√ε is 0/0 at it in every derivative.
 """
 
+from collections.abc import Sequence
 from functools import partial
 from typing import NamedTuple
 
@@ -21,7 +22,7 @@ import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
-from ._gap import gap_of, half_angle
+from ._gap import gap_of, half_angle, turned_by
 from .special._cpu import in_blocks
 from .special._elementary import angle
 from .special._jacobi import Functions, functions, jacobi_and_slopes, slopes_at
@@ -89,7 +90,7 @@ def _along(primals, tangents, theta, v, *columns) -> Motion:
     epsilon, t, v0, _ = primals
     sin, cos, _ = half_angle(theta)
     force = -2 * epsilon * sin * cos
-    slopes = {1: (v, force)}
+    slopes: dict[int, Sequence[FloatArray]] = {1: (v, force)}
     if columns:
         columns = [_saturated(x, theta) for x in columns]
         theta_v0, v_v0 = slopes[2] = columns[:2]
@@ -196,7 +197,7 @@ def _theta_and_v(at: Functions, v0, start: Start) -> tuple[FloatArray, FloatArra
     turned = jnp.where(v0 < 0, -0.5, 0.5) * (at.turns + jnp.where(at.w < 0, -0.5, 0.5))
     whole = jnp.round(turned + (angle(start.s, start.c) - half) / (2 * jnp.pi))
     whole = jnp.where(start.m1 < 0, 2 * whole, 0)
-    return 2 * (half + (start.well + whole) * jnp.pi), 2 * start.root * w
+    return 2 * turned_by(start.well + whole, half), 2 * start.root * w
 
 
 def _matrix(start: Start, s, c, d, of_ph, of_dn):

@@ -46,7 +46,8 @@ def small_angle(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> S
     **Arguments:** as for [`frequency`][pendax.frequency].
 
     **Returns:** a [`SmallAngle`][].  α1 and θ_max are taken as they are; v0 in the
-    amplitude's is the speed at the bottom.  NaN where the pendulum does not swing.
+    amplitude's is the speed at the bottom.  NaN where the pendulum does not swing, and for
+    ω beyond α1 = √8, where its square is negative.
 
     **Raises:** `ValueError` for a scene with damping or torque.
 
@@ -69,7 +70,7 @@ def small_angle(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> S
 
     return SmallAngle(
         beside(2 * jnp.sin(0.5 * jnp.where(swings, top, 0)), top),
-        beside(root * jnp.sqrt(jnp.maximum(1 - first * first / 8, 0)), omega),
+        beside(root * jnp.sqrt(1 - first * first / 8), omega),
         beside(2 * jnp.pi / root * (1 + top * top / 16), 2 * jnp.pi / omega),
         beside(first * first * first / 192, third),
     )

@@ -50,7 +50,7 @@ def _time_to(
 @partial(_time_to.defjvp, symbolic_zeros=True)
 def _time_to_jvp(primals, tangents):
     # From θ(t(θ, …); …) = θ.
-    epsilon, theta, v0, theta0 = primals
+    epsilon, _, v0, theta0 = primals
     t = _time_to(*primals)
     full = [
         jnp.zeros_like(x) if isinstance(dx, SymbolicZero) else dx

@@ -110,7 +110,8 @@ def derivatives(point, order=2, bits=None) -> dict[tuple[int, ...], tuple]:
             for i, j in combinations_with_replacement(range(4), 2):
                 if i != j:
                     corners = [
-                        value(offset((i, a), (j, b))) for a, b in ((1, 1), (-1, -1), (1, -1), (-1, 1))
+                        value(offset((i, a), (j, b)))
+                        for a, b in ((1, 1), (-1, -1), (1, -1), (-1, 1))
                     ]
                     result[i, j] = tuple(
                         (p + q - r - s) / (4 * steps[i] * steps[j])

@@ -69,9 +69,7 @@ def test_first_derivatives(tag, dtype):
     """1e-11 × scale, forward and reverse within 1e-13 of each other (float32: 2e-4, 2e-6)."""
     rows, true = references_of(tag, dtype.name, 2)
     x = jnp.asarray(rows, dtype)
-    forward, reverse = (
-        np.asarray(compiled(mode)(x), float) for mode in (jax.jacfwd, jax.jacrev)
-    )
+    forward, reverse = (np.asarray(compiled(mode)(x), float) for mode in (jax.jacfwd, jax.jacrev))
     loose = np.finfo(dtype).eps / np.finfo("float64").eps
     loose = 1 if loose == 1 else loose / 27  # 1e-11 is 45,000 eps of float64, 2e-4 1,700
     for k, (row, d) in enumerate(zip(rows, true, strict=True)):

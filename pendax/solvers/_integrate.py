@@ -41,17 +41,8 @@ def integrate(
             f"Argument `solver` must not split its terms for a damped scene, but got {solver}."
         )
     terms = _split_terms(pendulum) if split else dfx.ODETerm(_field(pendulum))
-    eps = float(jnp.finfo(v0.dtype).eps)
     if stepsize_controller is None:
-        adaptive = isinstance(solver, dfx.AbstractAdaptiveSolver)
-        if not adaptive and dt0 is None:
-            raise ValueError(f"Argument `dt0` must be given with {type(solver).__name__}.")
-        if adaptive and dt0 is None:
-            rtol = eps**0.75 if rtol is None else rtol
-            atol = rtol if atol is None else atol
-            stepsize_controller = dfx.PIDController(rtol=rtol, atol=atol)
-        else:
-            stepsize_controller = dfx.ConstantStepSize()
+        stepsize_controller = _controller(solver, dt0, rtol, atol, v0.dtype)
     options = {
         "terms": terms,
         "solver": solver,
@@ -74,8 +65,20 @@ def integrate(
         stepsize_controller=stepsize_controller,
         **options,
     )
+    assert solution.ys is not None
     theta, v = solution.ys
     return theta, v, _result(solution.result), _stats(solution.stats)
+
+
+def _controller(solver, dt0, rtol, atol, dtype):
+    """Adaptive steps where the solver estimates its error and the caller names no step."""
+    adaptive = isinstance(solver, dfx.AbstractAdaptiveSolver)
+    if not adaptive and dt0 is None:
+        raise ValueError(f"Argument `dt0` must be given with {type(solver).__name__}.")
+    if not adaptive or dt0 is not None:
+        return dfx.ConstantStepSize()
+    rtol = float(jnp.finfo(dtype).eps) ** 0.75 if rtol is None else rtol
+    return dfx.PIDController(rtol=rtol, atol=rtol if atol is None else atol)
 
 
 def _constant(ts, t0, start, dt0, options):

@@ -8,7 +8,11 @@ import jax
 
 # Yoshida's triple jump for order 4, and his solution A for order 6: steps of Störmer and
 # Verlet's method of these lengths and, mirrored, back again.
-_OUTER = {2: (), 4: (1.3512071919596578,), 6: (0.784513610477560, 0.235573213359357, -1.17767998417887)}
+_OUTER = {
+    2: (),
+    4: (1.3512071919596578,),
+    6: (0.784513610477560, 0.235573213359357, -1.17767998417887),
+}
 
 
 class Symplectic(dfx.AbstractSolver):

@@ -63,7 +63,7 @@ def _sums(m: ArrayLike, terms: int, exact, weight) -> Approximation:
 @partial(jax.jit, static_argnums=(0, 1))
 def _partial(terms: int, ratios: tuple[float, ...], m: FloatArray, exact: FloatArray):
     factors = jnp.asarray(ratios, m.dtype).reshape((1,) * m.ndim + (-1,)) * m[..., None]
-    first = jnp.full((*m.shape, 1), 0.5 * jnp.pi, m.dtype)
+    first = 0.5 * jnp.pi + 0 * m[..., None]
     each = jnp.concatenate([first, first * jnp.cumprod(factors, -1)], -1)
     # What is left after the last: a geometric series where it is small, else a difference.
     last, ratio = each[..., -1], jnp.abs(factors[..., -1])
