@@ -2,6 +2,7 @@
 
 import argparse
 import sys
+from importlib import import_module
 from pathlib import Path
 
 # The references and the tagged cases are those of the tests.
@@ -19,15 +20,19 @@ def main() -> int:
     special.add_argument("--size", type=int, default=2**20, help="elements of an array")
     special.add_argument("--rounds", type=int, default=15, help="timings of each, interleaved")
     special.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
+    motion = commands.add_parser("motion", help="the closed form beside diffrax's solvers")
+    motion.add_argument("--seed", type=int, default=1, help="draws other arguments")
+    motion.add_argument("--size", type=int, default=2**20, help="values of an array")
+    motion.add_argument("--rounds", type=int, default=15, help="timings of each, interleaved")
+    motion.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
+    lean = commands.add_parser("lean", help="operations of the compiled scene, against paper")
+    lean.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
     options = vars(parser.parse_args())
 
     import jax
 
     jax.config.update("jax_enable_x64", True)
-    if options.pop("command") == "accuracy":
-        from .accuracy import report
-    else:
-        from .special import report
+    report = import_module(f".{options.pop('command')}", __package__).report
     return report(**options)
 
 
