@@ -174,7 +174,11 @@ def draw(points) -> None:
             mine = [p for p in points if p.method == method]
             style = {"ms": 14} if method == "closed form" else {}
             ax.loglog(
-                [p.seconds for p in mine], [p.error for p in mine], marker=marker, label=method, **style
+                [p.seconds for p in mine],
+                [p.error for p in mine],
+                marker=marker,
+                label=method,
+                **style,
             )
         ax.set(
             xlabel="run time, s",

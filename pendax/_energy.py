@@ -98,5 +98,6 @@ def _slack_angle(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray) -> Flo
     rise, gap = rise_and_gap(epsilon, v0, theta0)
     top = epsilon + gap  # 5ε − 2E, from the side on which it vanishes
     slack = (rise > 2 * epsilon) & (top > 0)
-    top, bottom = (jnp.sqrt(jnp.where(slack, x, jnp.nan)) for x in (top, epsilon + rise))
+    # NaN times x, for NaN as a constant has the derivative 0.
+    top, bottom = (jnp.sqrt(jnp.where(slack, x, jnp.nan * x)) for x in (top, epsilon + rise))
     return 2 * jnp.arctan2(bottom, top)

@@ -26,8 +26,9 @@ def frequency(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> Flo
 
     Computed as AGM(2√ε, √gap) / 2 and AGM(√rise, √−gap), which are those formulas
     without K, gap = 4ε cos²(θ0/2) − v0² with an error-free v0².  Within 4 eps relative
-    for θ0 = 0.  On the separatrix itself the derivative is −inf towards v0 (the limit
-    from the librating side), and second derivatives are not finite.
+    for θ0 = 0, else 8 eps of |ω| + Σ |x ∂ω/∂x|, a rounding of θ0 included.  On the
+    separatrix itself the derivative is −inf towards v0 (the limit from the librating
+    side), and second derivatives are not finite.
     Suzuki & Suzuki §2.6, §3.2; DLMF 19.8.5.
     """
     require_free(pendulum, "its frequency")

@@ -84,7 +84,8 @@ def rise_and_gap(
 
 @jax.custom_jvp
 def gap_of(four: FloatArray, v0: FloatArray, sin: FloatArray, cos: FloatArray) -> FloatArray:
-    """four cos² − v0², sin² + cos² = 1, to the last digit of the floats as given.
+    """four cos² − v0², sin² + cos² = 1, to the last digit for these floats as given: from
+    the bottom for those of the caller; elsewhere cos is a rounding off that of θ0.
 
     v0² is an error-free product: right also where √ε is no float, and
     (2√ε − v0)(2√ε + v0) would put the separatrix one float off.  cos² is used where it

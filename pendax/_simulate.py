@@ -80,9 +80,13 @@ def simulate(
 
     **Accuracy** of the closed form: 16 eps of |f| + Σ |x ∂f/∂x| over ε, t, v0, θ0 for f = θ
     and of that + |t ε sin θ| for v, for |v0| up to 1e8, |θ0| to 1e3, 1e6 periods, ε from
-    1e-12 to 1e12; from the bottom down to the last float of |v0 − 2√ε|.  First derivatives
-    within 1e-11, second within 1e-8 of their scale.  On the separatrix they grow like
-    e^(√ε t); where they leave the range of the floats a large number stands for them.
+    1e-12 to 1e12.  From the bottom |v0 − 2√ε| counts to its last digit; from elsewhere a
+    rounding of θ0 may decide between a swing and a turn, where the floats as given are as
+    near to the separatrix as that.  First derivatives g = ∂f/∂x are within 1e-11, second
+    ones within 1e-8, of |g| + Σ |y ∂g/∂y| + that of f over |x| (or 1, if larger; for ε over
+    ε): ∂/∂ε has the fewest digits where ε matters least, in fast rotations.  On the
+    separatrix derivatives grow like e^(√ε t); where they leave the range of the floats a
+    large number stands for them.
 
     Suzuki & Suzuki §2.3, §3.1; with a solver §5.
     """

@@ -65,7 +65,7 @@ def small_angle(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> S
         error = value / jnp.where(exact == 0, 1, exact) - 1
         return Approximation(
             jnp.where(swings, value, jnp.nan),
-            jnp.where(swings, jnp.where(exact == 0, 0, error), jnp.nan),
+            jnp.where(swings, jnp.where(exact == 0, 0 * value, error), jnp.nan),
         )
 
     return SmallAngle(

@@ -71,7 +71,9 @@ def derivatives(point, order=2, bits=None) -> dict[tuple[int, ...], tuple]:
     """
     point = [float(x) for x in point]
     epsilon, t, v0, theta0 = point
-    gap = abs(math.cos(theta0 / 2) ** 2 - v0 * v0 / (4 * epsilon))
+    with flint.ctx.workprec(2200):
+        cos = (flint.arb(theta0) / 2).cos()
+        gap = float(abs(cos * cos - flint.arb(v0) ** 2 / (4 * flint.arb(epsilon))))
     scales = [abs(epsilon), max(abs(t), 1e-3 / math.sqrt(epsilon)), math.sqrt(epsilon), 1.0]
     spread = math.sqrt(epsilon) * abs(t) if gap < 1e-3 else 0
     small = 100 + 2 * math.ceil(-math.log2(gap)) if gap > 0 else 100

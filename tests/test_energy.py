@@ -61,6 +61,12 @@ def test_tension_against_the_table(shared):
         assert bool(jnp.isfinite(slack)) == (row["slack"] == "yes")
 
 
+def test_where_no_string_goes_slack_is_nan_with_its_gradient():
+    slope = jax.vmap(jax.value_and_grad(lambda v0: slack_angle(Pendulum(), v0)))
+    value, gradient = slope(jnp.array([1.0, 2.0, 3.0]))
+    assert jnp.isnan(value).tolist() == jnp.isnan(gradient).tolist() == [True, False, True]
+
+
 def test_release_from_rest_against_the_table(shared):
     import csv
 

@@ -98,6 +98,12 @@ def test_special_points(dtype):
         assert mode(lambda e: frequency(Pendulum(e), separatrix))(pendulum.epsilon) == jnp.inf
     np.testing.assert_allclose(amplitude(pendulum, separatrix), np.pi, rtol=jnp.finfo(dtype).eps)
 
+    tiny = jnp.asarray(1e-300 if dtype == np.float64 else 1e-36, dtype)
+    assert amplitude(pendulum, tiny) == tiny / 2
+    assert (
+        amplitude(pendulum, at_rest) == jax.grad(lambda v0: amplitude(pendulum, v0))(at_rest) == 0
+    )
+
     v0 = jnp.asarray([0.5, 3.0, 4.0, 7.0], dtype)
     assert (omega(v0) == omega(-v0)).all()
     lanes = jax.vmap(omega)(jnp.asarray([1.0, jnp.nan, 5.0], dtype))

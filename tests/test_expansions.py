@@ -80,6 +80,7 @@ def test_small_angle_against_the_table(shared):
         np.testing.assert_allclose(got.frequency.value, math.sqrt(omega2), rtol=1e-13)
     assert jnp.isnan(small_angle(Pendulum(), 2.5).period.error)
     assert small_angle(Pendulum(), 0.0).amplitude.error == 0
+    assert jnp.isnan(small_angle(Pendulum(), 2.0).frequency.error)
 
 
 FIGURES = {"fig15": 120, "fig16": 150, "fig18": None}
