@@ -45,13 +45,14 @@ class Symplectic(dfx.AbstractSolver):
         theta, v = y0
         outer = _OUTER[self.degree]
         stages = (*outer, 1 - 2 * sum(outer), *outer[::-1])
+        # Stages are fractions of the step: differences of rounded times would add up.
+        of_drift, of_kick = drift.contr(t0, t1), kick.contr(t0, t1)
         t = t0
         for stage in stages:
             after = t + stage * (t1 - t0)
-            half = 0.5 * kick.contr(t, after)
-            v = _moved(v, kick.vf_prod(t, theta, args, half))
-            theta = _moved(theta, drift.vf_prod(t, v, args, drift.contr(t, after)))
-            v = _moved(v, kick.vf_prod(after, theta, args, half))
+            v = _moved(v, kick.vf_prod(t, theta, args, 0.5 * stage * of_kick))
+            theta = _moved(theta, drift.vf_prod(t, v, args, stage * of_drift))
+            v = _moved(v, kick.vf_prod(after, theta, args, 0.5 * stage * of_kick))
             t = after
         y1 = theta, v
         return y1, None, {"y0": y0, "y1": y1}, None, dfx.RESULTS.successful
