@@ -15,6 +15,9 @@ from ._energy import velocity as velocity
 from ._exact import amplitude as amplitude
 from ._exact import frequency as frequency
 from ._exact import period as period
+from ._fixed_points import FixedPointKind as FixedPointKind
+from ._fixed_points import FixedPoints as FixedPoints
+from ._fixed_points import fixed_points as fixed_points
 from ._geometry import Geometry as Geometry
 from ._geometry import geometry as geometry
 from ._harmonics import Harmonics as Harmonics

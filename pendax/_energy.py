@@ -98,6 +98,6 @@ def _slack_angle(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray) -> Flo
     rise, gap = rise_and_gap(epsilon, v0, theta0)
     top = epsilon + gap  # 5ε − 2E, from the side on which it vanishes
     slack = (rise > 2 * epsilon) & (top > 0)
-    # NaN times x, for NaN as a constant has the derivative 0.
-    top, bottom = (jnp.sqrt(jnp.where(slack, x, jnp.nan * x)) for x in (top, epsilon + rise))
+    inside = jnp.where(slack, 1, jnp.nan)  # as a factor, for the derivatives
+    top, bottom = jnp.sqrt(inside * top), jnp.sqrt(inside * (epsilon + rise))
     return 2 * jnp.arctan2(bottom, top)
