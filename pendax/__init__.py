@@ -1,4 +1,16 @@
-"""The pendulum beyond small angles, exact and differentiable, in JAX."""
+"""The pendulum beyond small angles, exact and differentiable, in JAX.
+
+    the scene        Pendulum, Pendulum.from_si, energy, potential, velocity, tension,
+                     slack_angle, fixed_points
+    its motion       simulate, time_to, frequency, period, amplitude
+    its spectrum     harmonics, power_spectrum
+    its expansions   period_series, small_angle, critical_law, fit_critical_law
+    its geometry     geometry
+    data             cycles, fit_frequency
+    elsewhere        pendax.special, pendax.solvers, pendax.plot, pendax.figures
+
+Angles are in radians; `help` of each name has the rest.
+"""
 
 from importlib import import_module
 

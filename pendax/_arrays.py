@@ -85,6 +85,13 @@ def require(name: str, x: object, holds: str, test) -> None:
         raise ValueError(f"Argument `{name}` must be {holds}, but got {values[wrong].flat[0]}.")
 
 
+def whole(name: str, x: object, least: int) -> int:
+    """`x` as an integer from `least` on, else ValueError."""
+    if not isinstance(x, int | np.integer) or x < least:
+        raise ValueError(f"Argument `{name}` must be {least} or more, a whole number, but got {x}.")
+    return int(x)
+
+
 def difference_of_products(
     a: Float[Array, "..."], b: Float[Array, "..."], c: Float[Array, "..."], d: Float[Array, "..."]
 ) -> Float[Array, "..."]:

@@ -12,7 +12,7 @@ FloatArray = Float[Array, "..."]
 
 
 class FixedPointKind(eqx.Enumeration):
-    """`==` compares lane by lane."""
+    """What a small push does to a pendulum at rest; `==` compares lane by lane."""
 
     spiral = "Spiral: motions die out, turning around it."
     node = "Node: motions die out without turning (β ≥ 2 √(ε cos θ))."

@@ -16,10 +16,10 @@ Point = Float[Array, "... 2"]
 class Geometry(NamedTuple):
     """Points (x, y), pivot O at the origin, and lengths, in units of the rod's length l.
 
-    A bottom and E top of the circle that the bob P is on; B and B′ its turning points (NaN
-    in rotation); N the foot of P on the vertical AE; D where the energy would lift the bob
-    to, beyond E in rotation; Q the point of the circle over AD at P's height.  With
-    k = sin(θ_max/2), also above 1, AB = 2k, AD = 2k², AN = 2k² sn², ND = 2k² cn²,
+    A bottom and E top of the circle that the bob P is on; B and B1 (the source's B′) its
+    turning points (NaN in rotation); N the foot of P on the vertical AE; D where the energy
+    would lift the bob to, beyond E in rotation; Q the point of the circle over AD at P's
+    height.  With k = sin(θ_max/2), also above 1, AB = 2k, AD = 2k², AN = 2k² sn², ND = 2k² cn²,
     EN = 2 dn², AP = 2k sn, EP = 2 dn, NP = 2k sn dn, AQ = 2k² sn, NQ = 2k² sn cn,
     BE = 2√(1 − k²), DE = 2|1 − k²|.
     """
@@ -51,7 +51,8 @@ def geometry(pendulum: Pendulum, theta: ArrayLike, v: ArrayLike) -> Geometry:
     """Points and lengths of Suzuki & Suzuki's chapter 4 for a pendulum at (θ, v).
 
     **Arguments:** the undamped, untorqued `pendulum`; `theta`, rad; `v`, rad/s.  Shapes
-    broadcast; points have one more axis, (x, y).
+    broadcast; points have one more axis, (x, y).  For a given θ_max, the speed at θ is
+    `velocity(pendulum, theta, energy(pendulum, theta_max, 0.0))`.
 
     **Returns:** a [`Geometry`][], for k < 1, k = 1 and k > 1.  Lengths are not negative; Q
     is to the right of the vertical where θ and v have the same sign, and goes round its

@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import common, widened
+from ._arrays import common, whole, widened
 from ._exact import angular_frequency
 from ._gap import gap_of, half_angle, hypotenuse
 from ._pendulum import Pendulum, require_free
@@ -34,7 +34,9 @@ def harmonics(
 
     **Returns:** [`Harmonics`][].  In libration a_n = 4 / (n cosh(n π K'/2K)) for odd n, of
     K(m) and K' = K(1 − m), and 0 for even n; on the separatrix, the square wave's 4/n.  In
-    rotation 2 / (n cosh(n π K'/K)) for every n, of K(1/m).
+    rotation 2 / (n cosh(n π K'/K)) for every n, of K(1/m), so that a_1 drops from 4 to below
+    2 where v0 passes 2√ε: the series changes there, not the motion.  On the separatrix the
+    derivatives are infinite, and come out as NaN.
 
     **Raises:** `ValueError` for a scene with damping or torque, or a count below 1.
 
@@ -43,8 +45,7 @@ def harmonics(
     Within 8 eps of |a| + Σ |x ∂a/∂x|.  Suzuki & Suzuki §2.4; DLMF 22.11.
     """
     require_free(pendulum, "its harmonics")
-    if count < 1:
-        raise ValueError(f"Argument `count` must be 1 or more, but got {count}.")
+    count = whole("count", count, 1)
     arrays = common(epsilon=pendulum.epsilon, v0=v0, theta0=theta0)
     return Harmonics(*widened(partial(_harmonics, count))(*arrays))
 
@@ -75,6 +76,8 @@ def _base(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray):
     near_bottom = k * jnp.sqrt(over_p / 16)
     endless = m1 == 0
     length = log_nome(nome16(ladder(jnp.where(small | endless, 0.25, m1))))
-    near_one = jnp.where(endless, 1, jnp.exp(-0.5 * jnp.pi**2 / length))
+    near_one = jnp.exp(-0.5 * jnp.pi**2 / length)
+    # At the separatrix 1, and no derivative, rather than 0 for an infinite one.
+    near_one = jnp.where(endless, 1 - jnp.sqrt(m1), near_one)
     base = jnp.where(small, near_bottom, near_one)
     return jnp.where(rotates, base * base, base), rotates

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import NUMBERS, floating, require
+from ._arrays import NUMBERS, aligned, floating, require
 
 
 class Pendulum(eqx.Module):
@@ -61,6 +61,9 @@ class Pendulum(eqx.Module):
         **Raises:** `ValueError` for l, g or m ≤ 0, η < 0, or a missing mass.
         Suzuki & Suzuki §1.1, §7.1, §8.1.
         """
+        given = {"length": length, "gravity": gravity, "mass": mass, "damping": damping}
+        given |= {} if callable(torque) else {"torque": torque}
+        aligned(**{name: x for name, x in given.items() if x is not None})
         for name, x in (("length", length), ("gravity", gravity), ("mass", mass)):
             require(name, x, "positive", lambda x: (x > 0) & np.isfinite(x))
         require("damping", damping, "zero or positive", lambda x: (x >= 0) & np.isfinite(x))
@@ -110,5 +113,6 @@ def require_free(pendulum: object, what: str) -> None:
         terms = [name for name in ("beta", "tau") if getattr(pendulum, name) is not None]
         raise ValueError(
             f"Argument `pendulum` must have neither damping nor torque for {what}, "
-            f"but got one with {' and '.join(f'`{name}`' for name in terms)}."
+            f"but got one with {' and '.join(f'`{name}`' for name in terms)}"
+            + ("; a `solver` integrates it." if what == "its motion in closed form" else ".")
         )

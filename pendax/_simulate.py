@@ -55,9 +55,9 @@ def simulate(
     - `ts`: times, s; for the closed form in any order and of either sign, for a solver
       one axis, monotone away from `t0`.
     - `v0`, `theta0`: angular velocity, rad/s, and angle, rad, at `t0`, s.
-    - `solver`: a diffrax solver, to integrate the same scene for comparison: one that takes
-      a single term, such as `diffrax.Dopri8()`, or a pair, (θ̇(v), v̇(θ)), such as
-      `diffrax.SemiImplicitEuler()` or [`pendax.solvers.Symplectic`][]`(4)`.
+    - `solver`: a diffrax solver (an instance), to integrate the same scene for comparison:
+      one that takes a single term, such as `diffrax.Dopri8()`, or a pair, (θ̇(v), v̇(θ)),
+      such as `diffrax.SemiImplicitEuler()` or [`pendax.solvers.Symplectic`][]`(4)`.
     - `stepsize_controller`, `dt0`, `adjoint`: diffrax's.  By default a `PIDController` of
       `rtol` and `atol`, or, with `dt0` or a solver without error estimate, constant steps
       of |dt0| at most; and the `RecursiveCheckpointAdjoint`, which allows reverse mode.
@@ -66,8 +66,8 @@ def simulate(
       default a million.
     - `throw`: whether a solver that fails raises, or says so in `result`.
 
-    The leaves of the scene, `v0`, `theta0` and `t0` broadcast; times that differ from
-    lane to lane come through `jax.vmap`.
+    The leaves of the scene, `v0`, `theta0` and `t0` broadcast: they are the lanes, each
+    followed through all of `ts`.  Times that differ from lane to lane come through `jax.vmap`.
 
     **Returns:** a [`Trajectory`][], libration, rotation and the separatrix alike.  In the
     closed form there is no solver in the compiled program, and no kink anywhere: θ and v
@@ -163,8 +163,12 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     flat = {name: x.astype(dtype).reshape(-1) for name, x in lanes.items()}
     theta, v, result, stats = jax.vmap(one)(flat)
     if throw:
-        failed = (result == Result.too_many_steps) | (result == Result.solver_failed)
-        theta = eqx.error_if(theta, failed, "The solver failed; `throw=False` says in which lane.")
+        for how, what in (
+            (Result.too_many_steps, "took `max_steps` steps before the last time: raise it"),
+            (Result.solver_failed, "failed: its step became too small, or a number infinite"),
+        ):
+            message = f"The solver {what}; `throw=False` says in which lane."
+            theta = eqx.error_if(theta, result == how, message)
     restored = partial(jnp.reshape, shape=shape + ts.shape)
     by_lane = partial(jax.tree.map, lambda x: x.reshape(shape))
     return Trajectory(times, restored(theta), restored(v), by_lane(result), by_lane(stats))

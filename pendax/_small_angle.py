@@ -32,12 +32,23 @@ def period_series(amplitude: ArrayLike, terms: int) -> Approximation:
 
 
 class SmallAngle(NamedTuple):
-    """What the expansion says, each value with its relative error."""
+    """Expansions for small swings, each a `value` with its `error`, value/exact − 1.
 
-    amplitude: Approximation  # θ_max ≈ v0/√ε, rad
-    frequency: Approximation  # ω ≈ √ε √(1 − α1²/8), rad/s
-    period: Approximation  # T ≈ T0 (1 + θ_max²/16), s
-    third: Approximation  # α3 ≈ α1³/192, rad
+    With α1, α3, rad, the amplitudes of the first and third harmonics (those of
+    [`harmonics`][pendax.harmonics]) and θ_max that of the whole swing:
+
+    - `isochronous`: T ≈ T0 = 2π/√ε, s, the period of all small swings;
+    - `period`: T ≈ T0 (1 + θ_max²/16), s;
+    - `frequency`: ω ≈ √ε √(1 − α1²/8), rad/s;
+    - `amplitude`: θ_max ≈ v0/√ε, rad;
+    - `third`: α3 ≈ α1³/192, rad.
+    """
+
+    isochronous: Approximation
+    period: Approximation
+    frequency: Approximation
+    amplitude: Approximation
+    third: Approximation
 
 
 def small_angle(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> SmallAngle:
@@ -68,9 +79,11 @@ def small_angle(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> S
             jnp.where(swings, jnp.where(exact == 0, 0 * value, error), jnp.nan),
         )
 
+    period0, period = 2 * jnp.pi / root, 2 * jnp.pi / omega
     return SmallAngle(
-        beside(2 * jnp.sin(0.5 * jnp.where(swings, top, 0)), top),
-        beside(root * jnp.sqrt(1 - first * first / 8), omega),
-        beside(2 * jnp.pi / root * (1 + top * top / 16), 2 * jnp.pi / omega),
-        beside(first * first * first / 192, third),
+        isochronous=beside(period0, period),
+        period=beside(period0 * (1 + top * top / 16), period),
+        frequency=beside(root * jnp.sqrt(1 - first * first / 8), omega),
+        amplitude=beside(2 * jnp.sin(0.5 * jnp.where(swings, top, 0)), top),
+        third=beside(first * first * first / 192, third),
     )

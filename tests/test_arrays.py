@@ -5,7 +5,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from pendax._arrays import common, concrete, difference_of_products, require
+from pendax._arrays import common, concrete, difference_of_products, require, whole
 
 
 @pytest.mark.parametrize("compiled", [False, True])
@@ -75,3 +75,10 @@ def test_require_sees_values_but_not_tracers_or_nan():
         return x
 
     traced(-1.0)
+
+
+@pytest.mark.parametrize("x", [0, 2.5, "3", None])
+def test_whole_numbers(x):
+    assert whole("count", np.int64(3), 1) == 3
+    with pytest.raises(ValueError, match="`count` must be 1 or more, a whole number, but got"):
+        whole("count", x, 1)

@@ -9,7 +9,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from pendax import Pendulum, geometry, period_series, simulate, small_angle
+from pendax import Pendulum, geometry, period, period_series, simulate, small_angle
 from pendax.special import ellipe_series, ellipk_series
 
 
@@ -73,6 +73,8 @@ def test_small_angle_against_the_table(shared):
             (got.third, "rel_a3"),
         ):
             np.testing.assert_allclose(found.error, float(row[name]), rtol=1e-4, atol=1e-14)
+        true = 2 * math.pi / float(period(Pendulum(), v0)) - 1
+        np.testing.assert_allclose(got.isochronous.error, true, rtol=1e-9, atol=1e-15)
         omega2 = float(row["omega2_1_minus_a1sq_8"])
         if omega2 < 0:
             assert jnp.isnan(got.frequency.value)

@@ -35,10 +35,15 @@ def integrate(
     interpolants are less accurate than its steps (Dopri8's by a factor of 252).  Constant
     steps are shortened, all of those between two saved times alike, to end on them.
     """
+    if not isinstance(solver, dfx.AbstractSolver):
+        raise ValueError(
+            f"Argument `solver` must be a solver of diffrax, such as Dopri8(), but got {solver!r}."
+        )
     split = isinstance(solver.term_structure, tuple)
     if split and pendulum.beta is not None:
         raise ValueError(
-            f"Argument `solver` must not split its terms for a damped scene, but got {solver}."
+            "Argument `solver` must take one term for a damped scene, such as "
+            f"diffrax.Dopri8(), but got {solver}, which takes θ̇(v) and v̇(θ)."
         )
     terms = _split_terms(pendulum) if split else dfx.ODETerm(_field(pendulum))
     if stepsize_controller is None:

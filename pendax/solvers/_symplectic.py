@@ -18,7 +18,8 @@ _OUTER = {
 class Symplectic(dfx.AbstractSolver):
     """Störmer and Verlet's method composed to order 2, 4 or 6, in constant steps.
 
-    Takes a pair of terms, of θ̇(v) and v̇(θ), as diffrax's `SemiImplicitEuler` does.  The
+    Of order `degree`; `simulate` wants a `dt0` with it.  Takes a pair of terms, of θ̇(v) and
+    v̇(θ), as diffrax's `SemiImplicitEuler` does.  The
     energy error stays bounded for exponentially long times; the phase error grows like t.
 
     Hairer, Lubich, Wanner, *Geometric Numerical Integration*, §II.4, §V.3.2.

@@ -8,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from .._arrays import common, widened
+from .._arrays import common, whole, widened
 from ._complete import ellipe, ellipk
 
 FloatArray = Float[Array, "..."]
@@ -48,8 +48,7 @@ def ellipe_series(m: ArrayLike, terms: int) -> Approximation:
 
 
 def _sums(m: ArrayLike, terms: int, exact, weight) -> Approximation:
-    if terms < 1:
-        raise ValueError(f"Argument `terms` must be 1 or more, but got {terms}.")
+    terms = whole("terms", terms, 1)
     (m,) = common(m=m)
     n = np.arange(terms + _MORE, dtype=float)
     weights = weight(n)
