@@ -113,6 +113,5 @@ def require_free(pendulum: object, what: str) -> None:
         terms = [name for name in ("beta", "tau") if getattr(pendulum, name) is not None]
         raise ValueError(
             f"Argument `pendulum` must have neither damping nor torque for {what}, "
-            f"but got one with {' and '.join(f'`{name}`' for name in terms)}"
-            + ("; a `solver` integrates it." if what == "its motion in closed form" else ".")
+            f"but got one with {' and '.join(f'`{name}`' for name in terms)}."
         )

@@ -1,4 +1,4 @@
-"""One door to a trajectory: the closed form where there is one, a solver where asked for."""
+"""One door to a trajectory: the closed form where there is one, diffrax elsewhere."""
 
 from functools import partial
 from typing import Any
@@ -49,18 +49,24 @@ def simulate(
 ) -> Trajectory:
     """The motion through (θ0, v0) at time `t0`: in closed form, or by a solver of diffrax.
 
+    The closed form answers when the scene has neither damping nor torque and no `solver` is
+    named, diffrax in all other cases.
+
     **Arguments:**
 
-    - `pendulum`: the scene, ε in 1/s²; without `solver`, undamped and untorqued.
+    - `pendulum`: the scene, ε in 1/s², β in 1/s, τ in 1/s², a number or a function of t.
     - `ts`: times, s; for the closed form in any order and of either sign, for a solver
       one axis, monotone away from `t0`.
     - `v0`, `theta0`: angular velocity, rad/s, and angle, rad, at `t0`, s.
-    - `solver`: a diffrax solver (an instance), to integrate the same scene for comparison:
-      one that takes a single term, such as `diffrax.Dopri8()`, or a pair, (θ̇(v), v̇(θ)),
-      such as `diffrax.SemiImplicitEuler()` or [`pendax.solvers.Symplectic`][]`(4)`.
+    - `solver`: a diffrax solver (an instance), by default `diffrax.Dopri8()`; stiff scenes
+      (β far above √ε) want an implicit one, `diffrax.Kvaerno5()`.  One that takes a single
+      term, or for scenes without damping a pair, (θ̇(v), v̇(θ)), such as
+      `diffrax.SemiImplicitEuler()` or [`pendax.solvers.Symplectic`][]`(4)`.
     - `stepsize_controller`, `dt0`, `adjoint`: diffrax's.  By default a `PIDController` of
       `rtol` and `atol`, or, with `dt0` or a solver without error estimate, constant steps
-      of |dt0| at most; and the `RecursiveCheckpointAdjoint`, which allows reverse mode.
+      of |dt0| at most.  Without `adjoint`, derivatives are those of the variational
+      equations, solved along: every mode and order, memory independent of the number of
+      steps; for a pair of terms, diffrax's `RecursiveCheckpointAdjoint` (reverse mode).
     - `rtol`, `atol`: tolerances, by default eps^¾, 2e-12 in float64; `atol` as `rtol`.
     - `max_steps`: at most so many steps (between saved times, where they are constant); by
       default a million.
@@ -74,9 +80,10 @@ def simulate(
     are analytic functions of all arguments, and so are their derivatives of every order.
     Saved times of a solver are ends of its steps.
 
-    **Raises:** `ValueError` for a scene with damping or torque and no solver, and for a
-    solver's options without one; `RuntimeError` where a solver fails.  NaN and ε ≤ 0 under
-    a transformation give NaN in their own lane, and its `result` says so.
+    **Raises:** `ValueError` for a solver's options where the closed form answers, and for
+    times that are not monotone where it does not; `RuntimeError` where a solver fails.  NaN,
+    ε ≤ 0 and β < 0 under a transformation give NaN in their own lane, and its `result` says
+    so.
 
     **Accuracy** of the closed form: 16 eps of |f| + Σ |x ∂f/∂x| over ε, t, v0, θ0 for f = θ
     and of that + |t ε sin θ| for v, for |v0| up to 1e8, |θ0| to 1e3, 1e6 periods, ε from
@@ -88,7 +95,9 @@ def simulate(
     separatrix derivatives grow like e^(√ε t); where they leave the range of the floats a
     large number stands for them.
 
-    Suzuki & Suzuki §2.3, §3.1; with a solver §5.
+    Of a solver: its tolerance times what perturbations grow by.
+
+    Suzuki & Suzuki §2.3, §3.1; with a solver §5, §7, §8.
     """
     options = {
         "stepsize_controller": stepsize_controller,
@@ -98,7 +107,7 @@ def simulate(
         "atol": atol,
         "max_steps": max_steps,
     }
-    if solver is not None:
+    if solver is not None or (isinstance(pendulum, Pendulum) and not pendulum.is_free):
         return _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options)
     require_free(pendulum, "its motion in closed form")
     for name, option in options.items():
@@ -128,8 +137,6 @@ def _lanes(ts: Float[Array, "..."], *lanes: ArrayLike) -> list[Float[Array, "...
 
 
 def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Trajectory:
-    from .solvers import integrate
-
     require("rtol", options["rtol"], "positive", lambda x: x > 0)
     require("dt0", options["dt0"], "a step other than zero", lambda x: x != 0)
     (ts,) = common(ts=ts)
@@ -150,18 +157,20 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     if options["dt0"] is not None:
         options["dt0"] = jnp.asarray(options["dt0"], dtype)
 
-    def one(lane):
-        terms = {name: lane[name] for name in ("epsilon", "beta", "tau") if name in lane}
-        scene = eqx.tree_at(
-            lambda p: [getattr(p, name) for name in terms], pendulum, list(terms.values())
-        )
-        start = (lane["v0"], lane["theta0"], lane["t0"])
-        return integrate(scene, jnp.atleast_1d(times), *start, solver=solver, **options)
+    # A lane without an answer must not keep the others waiting.
+    bad = ~jnp.all(jnp.stack([jnp.isfinite(x) for x in lanes.values()]), 0)
+    bad = bad | ~jnp.all(jnp.isfinite(ts)) | (lanes["epsilon"] <= 0)
+    if "beta" in lanes:
+        bad = bad | (lanes["beta"] < 0)
+    lanes = {name: jnp.where(bad, 1, x) for name, x in lanes.items()}
 
-    times = ts.astype(dtype)
+    times = jnp.where(jnp.all(jnp.isfinite(ts)), ts, 0).astype(dtype)
     shape = lanes["v0"].shape
     flat = {name: x.astype(dtype).reshape(-1) for name, x in lanes.items()}
-    theta, v, result, stats = jax.vmap(one)(flat)
+    theta, v, result, stats = _solved(pendulum, jnp.atleast_1d(times), flat, solver, options)
+    bad = bad.reshape(-1)
+    theta, v = (jnp.where(bad[:, None], jnp.nan, x) for x in (theta, v))
+    result = jax.vmap(Result.where, in_axes=(0, None, 0))(bad, Result.not_a_number, result)
     if throw:
         for how, what in (
             (Result.too_many_steps, "took `max_steps` steps before the last time: raise it"),
@@ -172,6 +181,22 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     restored = partial(jnp.reshape, shape=shape + ts.shape)
     by_lane = partial(jax.tree.map, lambda x: x.reshape(shape))
     return Trajectory(times, restored(theta), restored(v), by_lane(result), by_lane(stats))
+
+
+@eqx.filter_jit
+def _solved(pendulum, times, lanes, solver, options):
+    """Compiled once for all calls alike."""
+    from .solvers import integrate
+
+    def one(lane):
+        terms = {name: lane[name] for name in ("epsilon", "beta", "tau") if name in lane}
+        scene = eqx.tree_at(
+            lambda p: [getattr(p, name) for name in terms], pendulum, list(terms.values())
+        )
+        start = (lane["v0"], lane["theta0"], lane["t0"])
+        return integrate(scene, times, *start, solver=solver, **options)
+
+    return jax.vmap(one)(lanes)
 
 
 def _require_monotone(ts, t0) -> None:

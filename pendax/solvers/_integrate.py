@@ -1,8 +1,10 @@
 """The equation of motion through diffrax, saved exactly at the times that are asked for."""
 
+from dataclasses import replace
 from typing import Any
 
 import diffrax as dfx
+import equinox as eqx
 import jax
 import jax.numpy as jnp
 from jax import lax
@@ -10,6 +12,7 @@ from jaxtyping import Array, Float
 
 from .._pendulum import Pendulum
 from .._results import Result
+from ._differentiable import differentiable
 
 FloatArray = Float[Array, "..."]
 
@@ -34,7 +37,9 @@ def integrate(
     An adaptive controller is clipped to the saved times: between steps diffrax's
     interpolants are less accurate than its steps (Dopri8's by a factor of 252).  Constant
     steps are shortened, all of those between two saved times alike, to end on them.
+    Without `solver`, Dopri8.
     """
+    solver = dfx.Dopri8() if solver is None else solver
     if not isinstance(solver, dfx.AbstractSolver):
         raise ValueError(
             f"Argument `solver` must be a solver of diffrax, such as Dopri8(), but got {solver!r}."
@@ -45,34 +50,90 @@ def integrate(
             "Argument `solver` must take one term for a damped scene, such as "
             f"diffrax.Dopri8(), but got {solver}, which takes θ̇(v) and v̇(θ)."
         )
-    terms = _split_terms(pendulum) if split else dfx.ODETerm(_field(pendulum))
     if stepsize_controller is None:
         stepsize_controller = _controller(solver, dt0, rtol, atol, v0.dtype)
-    options = {
-        "terms": terms,
-        "solver": solver,
-        "adjoint": dfx.RecursiveCheckpointAdjoint() if adjoint is None else adjoint,
-        "max_steps": max_steps,
-        "throw": False,
-    }
-    start = (theta0, v0)
-    if isinstance(stepsize_controller, dfx.ConstantStepSize):
-        return _constant(ts, t0, start, dt0, options)
-    if isinstance(stepsize_controller, dfx.PIDController):
-        stepsize_controller = dfx.ClipStepSizeController(stepsize_controller, step_ts=ts)
-    # The first step is the controller's choice, unless the caller knows better.
+    constant = isinstance(stepsize_controller, dfx.ConstantStepSize)
+    if constant and dt0 is None:
+        raise ValueError("Argument `dt0` must be given with constant steps.")
+    options = {"solver": solver, "max_steps": max_steps, "throw": False}
+    options["adjoint"] = dfx.RecursiveCheckpointAdjoint() if adjoint is None else adjoint
+
+    def solve(terms, start, ts):
+        if constant:
+            return _constant(terms, start, ts, dt0, options)
+        return _adaptive(terms, start, ts, stepsize_controller, dt0, options)
+
+    if split:
+        (theta, v), said = solve(_split_terms(pendulum, t0), (theta0, v0), ts - t0)
+    else:
+        leaves, rest = eqx.partition(pendulum, eqx.is_inexact_array)
+        leaves, treedef = jax.tree.flatten(leaves)
+
+        def field(t, y, p):
+            scene = eqx.combine(jax.tree.unflatten(treedef, p[3:]), rest)
+            return jnp.stack(_field(scene)(p[2] + t, tuple(y), None))
+
+        def start(p):
+            return jnp.stack(p[:2])
+
+        def solve_vector(field, start, p, ts):
+            return solve(dfx.ODETerm(lambda t, y, args: field(t, y, p)), start(p), ts)
+
+        p = [theta0, v0, t0, *leaves]
+        wrap = differentiable if adjoint is None else _as_it_is
+        ys, said = wrap(solve_vector, field, start, p, ts - t0)
+        theta, v = ys[:, 0], ys[:, 1]
+    return theta, v, _result(said.pop("result")), said
+
+
+def _as_it_is(solve, field, start, p, ts):
+    return solve(field, start, p, ts)
+
+
+def _adaptive(terms, start, ts, controller, dt0, options):
+    if isinstance(controller, dfx.PIDController):
+        times = lax.stop_gradient(ts)
+        if controller.dtmin is None:
+            # Without a smallest step NaN would be retried until `max_steps`.
+            smallest = jnp.finfo(ts.dtype).eps * jnp.max(jnp.abs(times))
+            controller = replace(controller, dtmin=smallest, force_dtmin=False)
+        controller = dfx.ClipStepSizeController(controller, step_ts=times)
     solution = dfx.diffeqsolve(
-        t0=t0,
+        terms,
+        t0=jnp.zeros_like(ts[0]),
         t1=ts[-1],
-        dt0=dt0,
+        dt0=dt0,  # None: the controller's choice
         y0=start,
         saveat=dfx.SaveAt(ts=ts),
-        stepsize_controller=stepsize_controller,
+        stepsize_controller=controller,
         **options,
     )
     assert solution.ys is not None
-    theta, v = solution.ys
-    return theta, v, _result(solution.result), _stats(solution.stats)
+    return solution.ys, _said(solution)
+
+
+def _constant(terms, start, ts, dt0, options):
+    """From one saved time to the next."""
+
+    def between(carry, t):
+        before, state = carry
+        steps = jnp.maximum(jnp.ceil(jnp.abs((t - before) / dt0) * (1 - 1e-6)), 1)
+        solution = dfx.diffeqsolve(
+            terms,
+            t0=before,
+            t1=t,
+            dt0=(t - before) / steps,
+            y0=state,
+            saveat=dfx.SaveAt(t1=True),
+            stepsize_controller=dfx.ConstantStepSize(),
+            **options,
+        )
+        state = jax.tree.map(lambda x: x[0], solution.ys)
+        return (t, state), (state, _said(solution))
+
+    _, (ys, said) = lax.scan(between, (jnp.zeros_like(ts[0]), start), ts)
+    result = jnp.max(said.pop("result"))
+    return ys, {"result": result} | jax.tree.map(jnp.sum, said)
 
 
 def _controller(solver, dt0, rtol, atol, dtype):
@@ -84,32 +145,6 @@ def _controller(solver, dt0, rtol, atol, dtype):
         return dfx.ConstantStepSize()
     rtol = float(jnp.finfo(dtype).eps) ** 0.75 if rtol is None else rtol
     return dfx.PIDController(rtol=rtol, atol=rtol if atol is None else atol)
-
-
-def _constant(ts, t0, start, dt0, options):
-    if dt0 is None:
-        raise ValueError("Argument `dt0` must be given with constant steps.")
-
-    def between(carry, t):
-        before, state, failed = carry
-        steps = jnp.maximum(jnp.ceil(jnp.abs((t - before) / dt0) * (1 - 1e-6)), 1)
-        solution = dfx.diffeqsolve(
-            t0=before,
-            t1=t,
-            dt0=(t - before) / steps,
-            y0=state,
-            saveat=dfx.SaveAt(t1=True),
-            stepsize_controller=dfx.ConstantStepSize(),
-            **options,
-        )
-        state = jax.tree.map(lambda x: x[0], solution.ys)
-        failed = failed | (solution.result != dfx.RESULTS.successful)
-        return (t, state, failed), (state, _stats(solution.stats))
-
-    empty = jnp.zeros((), bool)
-    (_, _, failed), ((theta, v), stats) = lax.scan(between, (t0, start, empty), ts)
-    result = Result.where(failed, Result.too_many_steps, Result.successful)
-    return theta, v, result, jax.tree.map(jnp.sum, stats)
 
 
 def _force(pendulum: Pendulum, t, theta):
@@ -129,24 +164,30 @@ def _field(pendulum: Pendulum):
     return field
 
 
-def _split_terms(pendulum: Pendulum):
+def _split_terms(pendulum: Pendulum, t0):
     return (
         dfx.ODETerm(lambda t, v, args: v),
-        dfx.ODETerm(lambda t, theta, args: _force(pendulum, t, theta)),
+        dfx.ODETerm(lambda t, theta, args: _force(pendulum, t0 + t, theta)),
     )
 
 
-def _result(result) -> Result:
-    ok = result == dfx.RESULTS.successful
-    many = result == dfx.RESULTS.max_steps_reached
-    failed = Result.where(many, Result.too_many_steps, Result.solver_failed)
-    return Result.where(ok, Result.successful, failed)
+_SUCCESS, _TOO_MANY, _FAILED = 0, 1, 2
 
 
-def _stats(stats: dict[str, Any]) -> dict[str, Array]:
+def _said(solution) -> dict[str, Array]:
+    """How it ended, as a number, and the counts of steps."""
+    many = solution.result == dfx.RESULTS.max_steps_reached
+    how = jnp.where(many, _TOO_MANY, _FAILED)
+    how = jnp.where(solution.result == dfx.RESULTS.successful, _SUCCESS, how)
     names = {
         "num_steps": "steps",
         "num_accepted_steps": "accepted",
         "num_rejected_steps": "rejected",
     }
-    return {ours: jnp.asarray(stats[theirs]) for theirs, ours in names.items()}
+    counts = {ours: jnp.asarray(solution.stats[theirs]) for theirs, ours in names.items()}
+    return {"result": how} | counts
+
+
+def _result(how: Array) -> Result:
+    failed = Result.where(how == _TOO_MANY, Result.too_many_steps, Result.solver_failed)
+    return Result.where(how == _SUCCESS, Result.successful, failed)
