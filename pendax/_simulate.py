@@ -152,6 +152,12 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     if dtype in (jnp.float16, jnp.bfloat16):
         raise ValueError(f"Arguments must be float32 or float64 for a solver, but got {dtype}.")
     _require_monotone(ts, t0)
+    if ts.size == 0:
+        empty = jnp.zeros(lanes["v0"].shape + ts.shape, dtype)
+        nothing = jnp.zeros(lanes["v0"].shape, bool)
+        return Trajectory(
+            ts, empty, empty, where(nothing, Result.successful, Result.successful), {}
+        )
     if options["max_steps"] is None:
         options["max_steps"] = 2**20
     if options["dt0"] is not None:

@@ -93,6 +93,29 @@ def test_derivatives_in_the_times():
     np.testing.assert_allclose(jax.jacrev(lambda x: at(t, x)[0])(0.5), difference, rtol=1e-7)
 
 
+def test_times_none_twice_and_traced():
+    pendulum = Pendulum(1.0, 0.1, 0.3)
+    assert simulate(pendulum, jnp.zeros(0), jnp.ones(2)).theta.shape == (2, 0)
+    twice = simulate(pendulum, jnp.array([0.0, 0.0, 1.0, 1.0, 2.0]), 1.0).theta
+    assert (twice[:2] == 0).all()
+    assert twice[2] == twice[3]
+    rows = jax.vmap(lambda ts: simulate(pendulum, ts, 1.0).theta)(
+        jnp.array([[0.0, 1.0], [1.0, 2.0]])
+    )
+    np.testing.assert_allclose(rows, [[0, twice[2]], [twice[2], twice[4]]], rtol=1e-10)
+    with pytest.raises(ValueError, match="monotone"):
+        simulate(pendulum, jnp.array([0.0, 2.0, 1.0]), 1.0)
+
+
+def test_constant_steps_that_are_traced():
+    def last(v0, dt0):
+        return simulate(Pendulum(1.0, 0.1), 2.0, v0, solver=dfx.Dopri8(), dt0=dt0).theta
+
+    slope = jax.vmap(jax.grad(last), in_axes=(None, 0))(1.0, jnp.array([0.1, 0.2]))
+    adaptive = jax.grad(lambda v0: simulate(Pendulum(1.0, 0.1), 2.0, v0).theta)(1.0)
+    np.testing.assert_allclose(slope, adaptive, rtol=1e-8)
+
+
 def test_a_torque_of_time_with_parameters():
     """A function that closes over what is differentiated, as `Partial` carries it."""
 

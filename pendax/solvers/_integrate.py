@@ -58,28 +58,31 @@ def integrate(
     options = {"solver": solver, "max_steps": max_steps, "throw": False}
     options["adjoint"] = dfx.RecursiveCheckpointAdjoint() if adjoint is None else adjoint
 
-    def solve(terms, start, ts):
+    def solve(terms, start, ts, dt0):
         if constant:
             return _constant(terms, start, ts, dt0, options)
         return _adaptive(terms, start, ts, stepsize_controller, dt0, options)
 
     if split:
-        (theta, v), said = solve(_split_terms(pendulum, t0), (theta0, v0), ts - t0)
+        (theta, v), said = solve(_split_terms(pendulum, t0), (theta0, v0), ts - t0, dt0)
     else:
         leaves, rest = eqx.partition(pendulum, eqx.is_inexact_array)
         leaves, treedef = jax.tree.flatten(leaves)
 
         def field(t, y, p):
-            scene = eqx.combine(jax.tree.unflatten(treedef, p[3:]), rest)
+            scene = eqx.combine(jax.tree.unflatten(treedef, p[3 : 3 + len(leaves)]), rest)
             return jnp.stack(_field(scene)(p[2] + t, tuple(y), None))
 
         def start(p):
             return jnp.stack(p[:2])
 
         def solve_vector(field, start, p, ts):
-            return solve(dfx.ODETerm(lambda t, y, args: field(t, y, p)), start(p), ts)
+            terms = dfx.ODETerm(lambda t, y, args: field(t, y, p))
+            step = None if dt0 is None else lax.stop_gradient(p[-1])
+            return solve(terms, start(p), ts, step)
 
-        p = [theta0, v0, t0, *leaves]
+        # A step that is traced has to go through the same door as all else that is.
+        p = [theta0, v0, t0, *leaves, *([] if dt0 is None else [dt0])]
         wrap = differentiable if adjoint is None else _as_it_is
         ys, said = wrap(solve_vector, field, start, p, ts - t0)
         theta, v = ys[:, 0], ys[:, 1]
