@@ -183,7 +183,7 @@ def draw(points) -> None:
             ylabel="largest error of θ, rad",
             title="100 periods at 1,000 times, v0 = 1.5 rad/s, ε = 1 1/s²",
         )
-        ax.legend(loc="upper right", ncols=2, fontsize=9)
+        ax.legend(loc="center left", bbox_to_anchor=(0.1, 0.5), fontsize=9)
         FOLDER.mkdir(exist_ok=True)
         figure.savefig(FOLDER / "motion.png")
     print(f"\nwritten: {FOLDER / 'motion.png'}")

@@ -63,7 +63,7 @@ def nearest(x: flint.arb) -> int:
     return int((up.floor().unique_fmpz() or up.mid().floor().unique_fmpz()) or 0)
 
 
-def derivatives(point, order=2, bits=None) -> dict[tuple[int, ...], tuple]:
+def derivatives(point, order=2) -> dict[tuple[int, ...], tuple]:
     """Of θ and v by (ε, t, v0, θ0) at floats: a sorted tuple of argument numbers -> (θ…, v…).
 
     By central differences, of step 2^-80 of each argument's own scale or of the distance to
@@ -80,8 +80,7 @@ def derivatives(point, order=2, bits=None) -> dict[tuple[int, ...], tuple]:
     if gap < 1e-14:
         small += math.ceil(3 * min(spread, 60 - math.log(gap + 1e-40)))
     shift = 60 + small
-    bits = bits or 700 + 4 * shift
-    with flint.ctx.workprec(bits):
+    with flint.ctx.workprec(700 + 4 * shift):
         at = [flint.arb(x) for x in point]
         steps = [flint.arb(x) * flint.arb(2) ** -shift for x in scales]
         values = {}

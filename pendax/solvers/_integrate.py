@@ -71,7 +71,9 @@ def integrate(
 
         def field(t, y, p):
             scene = eqx.combine(jax.tree.unflatten(treedef, p[3 : 3 + len(leaves)]), rest)
-            return jnp.stack(_field(scene)(p[2] + t, tuple(y), None))
+            theta, v = y
+            force = _force(scene, p[2] + t, theta)
+            return jnp.stack([v, force if scene.beta is None else force - scene.beta * v])
 
         def start(p):
             return jnp.stack(p[:2])
@@ -155,16 +157,6 @@ def _force(pendulum: Pendulum, t, theta):
     if pendulum.tau is None:
         return force
     return force + (pendulum.tau(t) if callable(pendulum.tau) else pendulum.tau)
-
-
-def _field(pendulum: Pendulum):
-    def field(t, state, args):
-        del args
-        theta, v = state
-        force = _force(pendulum, t, theta)
-        return v, force if pendulum.beta is None else force - pendulum.beta * v
-
-    return field
 
 
 def _split_terms(pendulum: Pendulum, t0):
