@@ -89,7 +89,9 @@ def _inexact(x):
     if not isinstance(x, NUMBERS):
         return x
     if isinstance(x, int | float):
-        return jnp.asarray(float(x))
+        # Under jit as well a number, for what is chosen by its value.
+        with jax.ensure_compile_time_eval():
+            return jnp.asarray(float(x))
     return jnp.asarray(x, floating(x))
 
 

@@ -13,6 +13,7 @@ class Result(eqx.Enumeration):
     too_few_points = "A fit needs two or more points on each side."
     not_converged = "The iteration did not converge."
     too_many_steps = "The solver took `max_steps` steps and was not at the last time yet."
+    too_stiff = "The solver took `max_steps` steps, held small by the damping alone."
     solver_failed = "The solver gave up: its step became too small, or a number infinite."
 
 

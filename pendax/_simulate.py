@@ -9,7 +9,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import aligned, common, concrete, require, widened
+from ._arrays import aligned, common, concrete, require, whole, widened
+from ._method import choose
 from ._motion import motion
 from ._pendulum import Pendulum, require_free
 from ._results import Result, where
@@ -21,7 +22,7 @@ class Trajectory(eqx.Module):
     `ts` has the times, of any shape; `theta` and `v` have the shape of the lanes
     followed by that of `ts`; `result` has the shape of the lanes.  θ is unwrapped.
     `stats` has the solver's `steps`, `accepted` and `rejected`, lane by lane; the closed
-    form has none.
+    form has none.  `method` names what answered.
     """
 
     ts: Float[Array, "*times"]
@@ -29,6 +30,7 @@ class Trajectory(eqx.Module):
     v: Float[Array, "*lanes_and_times"]
     result: Result
     stats: dict[str, Array]
+    method: str = eqx.field(static=True)
 
 
 def simulate(
@@ -120,7 +122,7 @@ def simulate(
     theta, v = widened(motion)(epsilon, times - t0, v0, theta0)
     lanes = tuple(range(theta.ndim - ts.ndim, theta.ndim))
     bad = ~jnp.all(jnp.isfinite(theta) & jnp.isfinite(v), axis=lanes)
-    return Trajectory(ts, theta, v, where(bad, Result.not_a_number, Result.successful), {})
+    return Trajectory(ts, theta, v, where(bad, Result.not_a_number, Result.successful), {}, "closed form")
 
 
 def _lanes(ts: Float[Array, "..."], *lanes: ArrayLike) -> list[Float[Array, "..."]]:
@@ -137,8 +139,12 @@ def _lanes(ts: Float[Array, "..."], *lanes: ArrayLike) -> list[Float[Array, "...
 
 
 def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Trajectory:
-    require("rtol", options["rtol"], "positive", lambda x: x > 0)
+    for name in ("rtol", "atol"):
+        options[name] = _tolerance(name, options[name])
     require("dt0", options["dt0"], "a step other than zero", lambda x: x != 0)
+    if options["max_steps"] is not None:
+        options["max_steps"] = whole("max_steps", options["max_steps"], 1)
+    seen = concrete(ts) is not None and concrete(t0) is not None
     (ts,) = common(ts=ts)
     if ts.ndim > 1:
         raise ValueError(f"Argument `ts` must have one axis at most, but got shape {ts.shape}.")
@@ -152,16 +158,18 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     if dtype in (jnp.float16, jnp.bfloat16):
         raise ValueError(f"Arguments must be float32 or float64 for a solver, but got {dtype}.")
     _require_monotone(ts, t0)
-    if ts.size == 0:
-        empty = jnp.zeros(lanes["v0"].shape + ts.shape, dtype)
-        nothing = jnp.zeros(lanes["v0"].shape, bool)
-        return Trajectory(
-            ts, empty, empty, where(nothing, Result.successful, Result.successful), {}
-        )
-    if options["max_steps"] is None:
-        options["max_steps"] = 2**20
+    default = float(jnp.finfo(dtype).eps) ** 0.75
+    options["rtol"] = options["rtol"] or default
+    options["atol"] = options["atol"] or options["rtol"]
     if options["dt0"] is not None:
         options["dt0"] = jnp.asarray(options["dt0"], dtype)
+    method = choose(pendulum, ts, t0, v0, solver, options, moving_times=not seen)
+    shape = lanes["v0"].shape
+    if ts.size == 0:
+        empty, none = jnp.zeros(shape + ts.shape, dtype), jnp.zeros(shape, bool)
+        return Trajectory(
+            ts, empty, empty, where(none, Result.successful, Result.successful), {}, method.name
+        )
 
     # A lane without an answer must not keep the others waiting.
     bad = ~jnp.all(jnp.stack([jnp.isfinite(x) for x in lanes.values()]), 0)
@@ -171,38 +179,48 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     lanes = {name: jnp.where(bad, 1, x) for name, x in lanes.items()}
 
     times = jnp.where(jnp.all(jnp.isfinite(ts)), ts, 0).astype(dtype)
-    shape = lanes["v0"].shape
     flat = {name: x.astype(dtype).reshape(-1) for name, x in lanes.items()}
-    theta, v, result, stats = _solved(pendulum, jnp.atleast_1d(times), flat, solver, options)
+    theta, v, result, stats = _solved(pendulum, jnp.atleast_1d(times), flat, method)
     bad = bad.reshape(-1)
     theta, v = (jnp.where(bad[:, None], jnp.nan, x) for x in (theta, v))
     result = jax.vmap(Result.where, in_axes=(0, None, 0))(bad, Result.not_a_number, result)
     if throw:
-        for how, what in (
-            (Result.too_many_steps, "took `max_steps` steps before the last time: raise it"),
-            (Result.solver_failed, "failed: its step became too small, or a number infinite"),
-        ):
-            message = f"The solver {what}; `throw=False` says in which lane."
-            theta = eqx.error_if(theta, result == how, message)
+        for how, cure in _CURES:
+            theta = eqx.error_if(theta, result == how, f"{Result[how]} {cure}")
     restored = partial(jnp.reshape, shape=shape + ts.shape)
     by_lane = partial(jax.tree.map, lambda x: x.reshape(shape))
-    return Trajectory(times, restored(theta), restored(v), by_lane(result), by_lane(stats))
+    theta, v = restored(theta), restored(v)
+    return Trajectory(times, theta, v, by_lane(result), by_lane(stats), method.name)
+
+
+_CURES = (
+    (Result.too_many_steps, "Raise `max_steps`, or `rtol`; `throw=False` says in which lane."),
+    (Result.too_stiff, "Use `solver=diffrax.Kvaerno5()`; `throw=False` says in which lane."),
+    (Result.solver_failed, "`throw=False` says in which lane, and has NaN from there on."),
+)
 
 
 @eqx.filter_jit
-def _solved(pendulum, times, lanes, solver, options):
+def _solved(pendulum, times, lanes, method):
     """Compiled once for all calls alike."""
-    from .solvers import integrate
 
     def one(lane):
         terms = {name: lane[name] for name in ("epsilon", "beta", "tau") if name in lane}
         scene = eqx.tree_at(
             lambda p: [getattr(p, name) for name in terms], pendulum, list(terms.values())
         )
-        start = (lane["v0"], lane["theta0"], lane["t0"])
-        return integrate(scene, times, *start, solver=solver, **options)
+        return method(scene, times, lane["v0"], lane["theta0"], lane["t0"])
 
     return jax.vmap(one)(lanes)
+
+
+def _tolerance(name: str, x) -> float | None:
+    if x is None:
+        return None
+    values = concrete(x)
+    if values is None or values.ndim or not (0 < values < np.inf):
+        raise ValueError(f"Argument `{name}` must be one positive number, but got {x}.")
+    return float(values)
 
 
 def _require_monotone(ts, t0) -> None:

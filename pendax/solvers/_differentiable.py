@@ -17,6 +17,8 @@ import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
+from ..taylor._columns import no_tangent, unit_tangents
+
 FloatArray = Float[Array, "..."]
 # y' = field(t, y, p) from y(0) = start(p); y a vector, p a list of arrays.
 Field = Callable[[FloatArray, FloatArray, list[FloatArray]], FloatArray]
@@ -49,24 +51,13 @@ def differentiable(
         if not isinstance(dts, SymbolicZero):
             along = jax.vmap(lambda t, y: field(t, y, p))(ts, y)
             dy = dy + along * dts[:, None]
-        return (y, said), (dy, jax.tree.map(_no_tangent, said))
+        return (y, said), (dy, jax.tree.map(no_tangent, said))
 
     return solution(p, ts)
 
 
 def _with_slopes(field: Field, start: Start, moving: list[int], size: int) -> tuple[Field, Start]:
     """The equation of (y, ∂y/∂p_1, ∂y/∂p_2, …), p_k the elements of the `moving` arrays."""
-
-    def directions(p):
-        """Unit tangents of p, stacked."""
-        count = sum(p[i].size for i in moving)
-        units = jnp.split(
-            jnp.eye(count, dtype=p[0].dtype), _ends([p[i].size for i in moving]), axis=1
-        )
-        stacked = [jnp.zeros((count, *x.shape), x.dtype) for x in p]
-        for i, unit in zip(moving, units, strict=True):
-            stacked[i] = unit.reshape(count, *p[i].shape)
-        return stacked
 
     def wider_field(t, wide, p):
         y, slopes = wide[:size], wide[size:].reshape(-1, size)
@@ -76,24 +67,15 @@ def _with_slopes(field: Field, start: Start, moving: list[int], size: int) -> tu
         def along(dy, dp):
             return jax.jvp(lambda y, p: field(t, y, p), (y, p), (dy, dp))
 
-        values, changes = jax.vmap(along, out_axes=(None, 0))(slopes, directions(p))
+        values, changes = jax.vmap(along, out_axes=(None, 0))(slopes, unit_tangents(moving, p))
         return jnp.concatenate([values, changes.ravel()])
 
     def wider_start(p):
         if not moving:
             return start(p)
         values, changes = jax.vmap(lambda dp: jax.jvp(start, (p,), (dp,)), out_axes=(None, 0))(
-            directions(p)
+            unit_tangents(moving, p)
         )
         return jnp.concatenate([values, changes.ravel()])
 
     return wider_field, wider_start
-
-
-def _ends(sizes: list[int]) -> list[int]:
-    return [sum(sizes[: k + 1]) for k in range(len(sizes) - 1)]
-
-
-def _no_tangent(x):
-    """Counts and flags have no derivative."""
-    return jnp.zeros(jnp.shape(x), jax.dtypes.float0)

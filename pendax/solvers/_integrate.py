@@ -37,9 +37,7 @@ def integrate(
     An adaptive controller is clipped to the saved times: between steps diffrax's
     interpolants are less accurate than its steps (Dopri8's by a factor of 252).  Constant
     steps are shortened, all of those between two saved times alike, to end on them.
-    Without `solver`, Dopri8.
     """
-    solver = dfx.Dopri8() if solver is None else solver
     if not isinstance(solver, dfx.AbstractSolver):
         raise ValueError(
             f"Argument `solver` must be a solver of diffrax, such as Dopri8(), but got {solver!r}."
@@ -100,7 +98,7 @@ def _adaptive(terms, start, ts, controller, dt0, options):
         times = lax.stop_gradient(ts)
         if controller.dtmin is None:
             # Without a smallest step NaN would be retried until `max_steps`.
-            smallest = jnp.finfo(ts.dtype).eps * jnp.max(jnp.abs(times))
+            smallest = jnp.finfo(ts.dtype).eps ** 1.5 * jnp.max(jnp.abs(times))
             controller = replace(controller, dtmin=smallest, force_dtmin=False)
         controller = dfx.ClipStepSizeController(controller, step_ts=times)
     solution = dfx.diffeqsolve(

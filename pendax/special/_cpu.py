@@ -24,15 +24,21 @@ def once(function: Callable, *arguments: Any) -> Any:
     results = jax.eval_shape(function, *arguments)
     if max(x.size for x in jax.tree.leaves(results)) < _SMALL:
         return function(*arguments)
+    return stage(function, *arguments)
 
-    def never(*_):
+
+def stage(function: Callable, *arguments: Any) -> Any:
+    """[`once`][] whatever the size, for what `vmap` will make large."""
+
+    def never(*arguments):
+        results = jax.eval_shape(function, *arguments)
         return jax.tree.map(lambda x: jnp.zeros(x.shape, x.dtype), results)
 
-    def stage(*arguments):
+    def cut(*arguments):
         false = lax.optimization_barrier(jnp.zeros((), bool))
         return lax.cond(false, never, function, *arguments)
 
-    return lax.platform_dependent(*arguments, cpu=stage, default=function)
+    return lax.platform_dependent(*arguments, cpu=cut, default=function)
 
 
 def in_blocks(function: Callable) -> Callable:

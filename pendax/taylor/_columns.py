@@ -1,0 +1,67 @@
+"""Derivatives in every mode and order of what JAX can only differentiate forwards.
+
+A loop of unknown length has no reverse mode.  Here the tangent of f(p) is J dp, with J from
+forward mode: a product with numbers, and so linear and transposable; and J is itself such
+an f, so that its tangent is had in the same way.  Memory does not grow with the length of
+the loop.
+"""
+
+from collections.abc import Callable
+from functools import partial
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+from jax.custom_derivatives import SymbolicZero
+from jaxtyping import Array, Float
+
+Parameters = list[Float[Array, "..."]]
+
+
+def by_columns(f: Callable[[Parameters], tuple[Any, Any]], p: Parameters) -> tuple[Any, Any]:
+    """`f(p)`, a pytree of arrays and whatever else `f` says; `p` must hold all that is traced."""
+
+    @jax.custom_jvp
+    def value(p):
+        return f(p)
+
+    @partial(value.defjvp, symbolic_zeros=True)
+    def _(primals, tangents):
+        (p,), (dp,) = primals, tangents
+        moving = [i for i, dx in enumerate(dp) if not isinstance(dx, SymbolicZero)]
+        if not moving:
+            y, said = by_columns(f, p)
+            return (y, said), jax.tree.map(no_tangent, (y, said))
+        (y, columns), said = by_columns(partial(_with_columns, f, moving), p)
+        direction = jnp.concatenate([jnp.ravel(dp[i]) for i in moving])
+        dy = jax.tree.map(lambda column: column @ direction, columns)
+        return (y, said), (dy, jax.tree.map(no_tangent, said))
+
+    return value(p)
+
+
+def _with_columns(f, moving: list[int], p: Parameters):
+    """`f(p)` and ∂f/∂p_k, on a last axis, p_k the elements of the `moving` arrays."""
+
+    def along(dp):
+        y, dy, said = jax.jvp(f, (p,), (dp,), has_aux=True)
+        return (y, dy), said
+
+    return jax.vmap(along, out_axes=((None, -1), None))(unit_tangents(moving, p))
+
+
+def unit_tangents(moving: list[int], p: Parameters) -> Parameters:
+    """Tangents of `p` in each direction of the `moving` arrays' elements, stacked."""
+    sizes = [p[i].size for i in moving]
+    ends = [sum(sizes[: k + 1]) for k in range(len(sizes) - 1)]
+    units = jnp.split(jnp.eye(sum(sizes), dtype=p[0].dtype), ends, axis=1)
+    stacked = [jnp.zeros((sum(sizes), *x.shape), x.dtype) for x in p]
+    for i, unit in zip(moving, units, strict=True):
+        stacked[i] = unit.reshape(-1, *p[i].shape)
+    return stacked
+
+
+def no_tangent(x):
+    """That of counts and flags, and of numbers that nothing moves."""
+    dtype = x.dtype if jnp.issubdtype(x.dtype, jnp.inexact) else jax.dtypes.float0
+    return jnp.zeros(jnp.shape(x), dtype)

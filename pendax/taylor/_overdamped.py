@@ -1,0 +1,63 @@
+"""The overdamped pendulum once its velocity has relaxed: a slow motion of the angle alone.
+
+After a few times 1/β, v is a function of θ, v = (f − v̇)/β with f = τ − ε sin θ, and steps need
+no longer resolve 1/β.  In time counted in β/(ε + |τ|), with w that time's dθ/dt, this is
+
+    w = f/(ε + |τ|) − δ ẇ,    δ = (ε + |τ|)/β²,
+
+solved by iteration: each sweep is a Taylor series with ẇ from the one before, and right to one
+more power of δ.  Rejected: the full series from a state off that curve, whose terms grow
+like (β t)^n/n! from the last digit on; an implicit method, with its Jacobians and low order.
+"""
+
+from functools import partial
+
+import jax
+import jax.numpy as jnp
+from jax import lax
+
+from ._series import Method, Scene, State, method, plain, sine_and_cosine
+
+# δ below which five sweeps leave less than eps: the error is 42 δ⁵ (Catalan's numbers).
+LARGEST = 1e-3 / 4
+_SWEEPS = 5
+
+
+def overdamped(order: int, rtol: float, atol: float) -> Method:
+    """Steps on the slow curve: they take θ, and give v whatever it was."""
+    return method(partial(_series, order), order, rtol, atol, plain)
+
+
+def is_overdamped(scene: Scene):
+    """Whether the slow curve exists, and is known to all digits."""
+    return _strength(scene) < LARGEST * scene.beta * scene.beta
+
+
+def _strength(scene: Scene):
+    return scene.epsilon if scene.tau is None else scene.epsilon + abs(scene.tau)
+
+
+@partial(jax.jit, static_argnums=0)
+def _series(order: int, scene: Scene, state: State):
+    strength = _strength(scene)
+    rate, delta = strength / scene.beta, strength / (scene.beta * scene.beta)
+    epsilon = scene.epsilon / strength
+    tau = None if scene.tau is None else scene.tau / strength
+
+    def sweep(_, before):
+        w, theta = [], [state.theta]
+        sines, cosines = [jnp.sin(state.theta)], [jnp.cos(state.theta)]
+        for n in range(order + 1):
+            f = -epsilon * sines[n]
+            if tau is not None and n == 0:
+                f = f + tau
+            w.append(f - delta * (n + 1) * before[n + 1])
+            theta.append(w[n] / (n + 1))
+            sine, cosine = sine_and_cosine(theta, sines, cosines)
+            sines.append(sine)
+            cosines.append(cosine)
+        return jnp.stack([*w, jnp.zeros_like(rate)])
+
+    # A loop, that its program be small.
+    w = lax.fori_loop(0, _SWEEPS, sweep, jnp.zeros(order + 2, rate.dtype))
+    return rate, list(w[: order + 1])

@@ -1,0 +1,169 @@
+"""Taylor's method for θ̈ + β θ̇ + ε sin θ = τ with constant parameters.
+
+The series of θ, v = θ̇, s = sin θ and c = cos θ in t follow from each other,
+
+    (n+1) v_{n+1} = τ [n = 0] − ε s_n − β v_n,    (n+1) θ_{n+1} = v_n,
+    (n+1) s_{n+1} = Σ_k v_k c_{n−k},              (n+1) c_{n+1} = − Σ_k v_k s_{n−k},
+
+and the last two terms say how far the series may be trusted, before the step is taken: no
+step is rejected.  Time is counted in 1/rate of the moment, so that coefficients of any scene
+are of order one.
+
+Steps are held fixed when a step is differentiated: its derivatives are then Taylor's
+method for the variational equations, whose series converge where this one does.
+
+Jorba & Zou, Exp. Math. 14 (2005) 99.
+"""
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Float
+
+from ..special._cpu import stage
+
+Scalar = Float[Array, ""]
+
+
+class Scene(NamedTuple):
+    """The parameters, a term that is `None` being absent."""
+
+    epsilon: Scalar
+    beta: Scalar | None
+    tau: Scalar | None
+
+
+class State(NamedTuple):
+    theta: Scalar
+    v: Scalar
+
+
+class Method(NamedTuple):
+    """A step of size h and, from (θ, v), the size that keeps it within the tolerances."""
+
+    step: Callable[[Scene, State, Scalar], State]
+    size: Callable[[Scene, State], Scalar]
+
+
+def order_for(rtol: float, atol: float) -> int:
+    """−½ ln(tolerance) or a little less: time to run is flat there, time to compile is not."""
+    return max(6, min(20, round(-0.45 * math.log(min(rtol, atol)))))
+
+
+def taylor(order: int, rtol: float, atol: float) -> Method:
+    """Steps of given `order`, errors within atol + rtol |y| in θ and in v each."""
+    return method(partial(_scaled_series, order), order, rtol, atol)
+
+
+def method(series: Callable, order: int, rtol: float, atol: float, cut: Callable = stage) -> Method:
+    """Of `series(scene, state)`: a rate, and the coefficients of v / rate in rate · t."""
+
+    def theta_after(scene, state, h):
+        rate, v = series(scene, state)
+        return state.theta + h * rate * _polynomial(_integrated(v[:-1]), h * rate)
+
+    def v_after(scene, state, h):
+        # On a slow manifold the series starts from a v of its own.
+        rate, v = series(scene, state)
+        return rate * (v[0] + h * rate * _polynomial(v[1:], h * rate))
+
+    def step(scene, state, h):
+        return State(cut(theta_after, scene, state, h), cut(v_after, scene, state, h))
+
+    def size_of(scene, state):
+        rate, v = series(scene, state)
+        theta = _integrated(v)
+        allowed = [atol + rtol * jnp.abs(x) for x in state]
+
+        def within(n):
+            # |θ_n| and |v_n| against what is allowed; θ's list starts at n = 1.
+            share = jnp.maximum(
+                jnp.abs(theta[n - 1]) / allowed[0], rate * jnp.abs(v[n]) / allowed[1]
+            )
+            return share ** (-1 / n)
+
+        return jnp.minimum(within(order - 1), within(order)) / rate
+
+    def size(scene, state):
+        return cut(size_of, *lax.stop_gradient((scene, state)))
+
+    return Method(step, size)
+
+
+def plain(function: Callable, *arguments):
+    """No cut: for steps that are few."""
+    return function(*arguments)
+
+
+def _integrated(v):
+    return [x / (n + 1) for n, x in enumerate(v)]
+
+
+def _polynomial(coefficients, h):
+    total = coefficients[-1]
+    for x in coefficients[-2::-1]:
+        total = total * h + x
+    return total
+
+
+@partial(jax.jit, static_argnums=0)  # traced once
+def _scaled_series(order: int, scene: Scene, state: State):
+    rate = jnp.sqrt(scene.epsilon)
+    for other in (jnp.abs(state.v), scene.beta):
+        rate = rate if other is None else jnp.maximum(rate, other)
+    if scene.tau is not None:
+        rate = jnp.maximum(rate, jnp.sqrt(jnp.abs(scene.tau)))
+    rate = lax.stop_gradient(rate)
+    unit = 1 / rate
+    scaled = Scene(
+        scene.epsilon * unit * unit,
+        None if scene.beta is None else scene.beta * unit,
+        None if scene.tau is None else scene.tau * unit * unit,
+    )
+    v = [state.v * unit]
+    theta, sines, cosines = [state.theta], [jnp.sin(state.theta)], [jnp.cos(state.theta)]
+    for n in range(order):
+        v.append(force(scaled, sines, v, n) / (n + 1))
+        theta.append(v[n] / (n + 1))
+        sine, cosine = sine_and_cosine(theta, sines, cosines)
+        sines.append(sine)
+        cosines.append(cosine)
+    return rate, v
+
+
+def force(scene: Scene, sines, v, n: int) -> Scalar:
+    """The n-th coefficient of v̇."""
+    total = -scene.epsilon * sines[n]
+    if scene.beta is not None:
+        total = total - scene.beta * v[n]
+    if scene.tau is not None and n == 0:
+        total = total + scene.tau
+    return total
+
+
+@jax.custom_jvp
+def sine_and_cosine(theta, sines, cosines):
+    """The next coefficients of sin θ and cos θ, from all up to that of θ."""
+    n = len(theta) - 1
+    slopes = [k * theta[k] for k in range(1, n + 1)]
+    sine = sum(slope * cosines[n - k] for k, slope in enumerate(slopes, 1)) / n
+    cosine = sum(slope * sines[n - k] for k, slope in enumerate(slopes, 1)) / -n
+    return sine, cosine
+
+
+@sine_and_cosine.defjvp
+def _(primals, tangents):
+    """δ sin θ = cos θ δθ: one product, and of θ alone, where the recurrence's tangent has four."""
+    theta, sines, cosines = primals
+    moved = tangents[0]
+    first = sine_and_cosine(theta, sines, cosines)
+    sines, cosines = [*sines, first[0]], [*cosines, first[1]]
+    n = len(theta) - 1
+    of_sine = sum(cosines[n - k] * moved[k] for k in range(n + 1))
+    of_cosine = -sum(sines[n - k] * moved[k] for k in range(n + 1))
+    return first, (of_sine, of_cosine)
