@@ -12,7 +12,15 @@ from jaxtyping import Array
 
 from ._pendulum import Pendulum
 from ._results import Result
-from .taylor import Scene, State, budget, is_overdamped, marched
+from .taylor import (
+    Scene,
+    State,
+    averaged,
+    budget,
+    is_overdamped,
+    marched,
+    with_derivatives,
+)
 
 
 class Method(eqx.Module):
@@ -58,6 +66,30 @@ class TaylorSeries(Method):
         return states.theta, states.v, result, stats
 
 
+class Averaged(Method):
+    """For β far below √ε, without torque, over many turns."""
+
+    moving_times: bool = eqx.field(static=True)
+    name: str = eqx.field(static=True, default="averaging over turns")
+
+    def __call__(self, scene, times, v0, theta0, t0):
+        terms, start = Scene(scene.epsilon, scene.beta, None), State(theta0, v0)
+
+        def solve(scene, start, ts, _):
+            return averaged(scene, start, ts)
+
+        states, error = with_derivatives(
+            solve, terms, start, times - t0, None, self.moving_times
+        )
+        # Nothing is left to be averaged where it hangs at rest, or has not begun.
+        still = (times == t0) | ((v0 == 0) & (theta0 == 0))
+        theta = jnp.where(still, theta0, states.theta)
+        v = jnp.where(still, v0, states.v)
+        arrived = jnp.all(jnp.isfinite(theta) & jnp.isfinite(v))
+        result = Result.where(arrived, Result.successful, Result.solver_failed)
+        return theta, v, result, {"error": jnp.max(jnp.where(still, 0, error))}
+
+
 class Diffrax(Method):
     """Whatever diffrax offers."""
 
@@ -78,6 +110,8 @@ def choose(
     overdamped = _overdamped(pendulum)
     named = ("stepsize_controller", "dt0", "adjoint")
     if not callable(pendulum.tau) and solver is None and all(options[x] is None for x in named):
+        if not moving_times and _barely_damped(pendulum, ts - t0):
+            return Averaged(moving_times)
         most = options["max_steps"]
         return TaylorSeries(
             options["rtol"],
@@ -93,6 +127,19 @@ def choose(
     if options["max_steps"] is None:
         options = options | {"max_steps": _enough(pendulum, ts, t0, v0)}
     return Diffrax(solver, options, type(solver).__name__)
+
+
+def _barely_damped(pendulum: Pendulum, since) -> bool:
+    """Whether all lanes are, and a step at a time would take long."""
+    terms = (pendulum.epsilon, pendulum.beta, since)
+    if pendulum.tau is not None or pendulum.beta is None or since.dtype != jnp.float64:
+        return False
+    if any(isinstance(x, Tracer) for x in terms):
+        return False
+    root = np.sqrt(np.asarray(pendulum.epsilon))
+    beta = np.asarray(pendulum.beta)
+    weak = np.all((beta > 0) & (beta <= 3e-4 * root))
+    return bool(weak and np.all(since >= 0) and np.max(since) * np.min(root) > 1e4)
 
 
 def _overdamped(pendulum: Pendulum) -> bool | None:

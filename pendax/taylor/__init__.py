@@ -1,8 +1,10 @@
 """Scenes without a clock, τ constant or absent, by Taylor series of the motion itself."""
 
+from ._averaged import averaged as averaged
 from ._march import March as March
 from ._march import budget as budget
 from ._march import marched as marched
+from ._march import with_derivatives as with_derivatives
 from ._overdamped import is_overdamped as is_overdamped
 from ._series import Scene as Scene
 from ._series import State as State

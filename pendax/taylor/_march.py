@@ -1,7 +1,8 @@
 """A scene without a clock, from saved time to saved time by Taylor's method."""
 
+from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -20,8 +21,8 @@ class March(NamedTuple):
 
     t: Scalar
     state: State
-    steps: Int[Array, ""]
-    going: Bool[Array, ""]  # False once a number was not finite, or a step too short
+    steps: Int[Array, ""] | int = 0
+    going: Bool[Array, ""] | bool = True  # not once a number was not finite, or a step too short
 
 
 def marched(
@@ -39,36 +40,42 @@ def marched(
 
     `moving_times`: whether `ts`, too, may be differentiated.
     """
-    leaves, treedef = jax.tree.flatten((scene, start, lax.stop_gradient(ts)))
-    # With the parameters, as all that is traced must be, and so a floating number.
-    leaves = [*leaves, max_steps.astype(ts.dtype)]
 
-    def solve(p):
-        scene, start, ts = jax.tree.unflatten(treedef, p[:-1])
-        most = p[-1].astype(jnp.int32)
+    def solve(scene, start, ts, most):
+        most = most.astype(jnp.int32)
         return march(scene, start, ts, most, rtol=rtol, atol=atol, stiff=stiff)
 
-    states, (reached, end) = by_columns(solve, leaves)
-    states = State(*(jnp.where(reached, x, jnp.nan) for x in states))
+    # With the parameters, as all that is traced must be, and so a floating number.
+    most = max_steps.astype(ts.dtype)
+    states, (reached, end) = with_derivatives(solve, scene, start, ts, most, moving_times)
+    return State(*(jnp.where(reached, x, jnp.nan) for x in states)), end
+
+
+def with_derivatives(
+    solve: Callable, scene: Scene, start: State, ts, extra, moving_times: bool
+) -> tuple[State, Any]:
+    """`solve(scene, start, ts, extra)`, states and what else it says, in every mode and order."""
+    leaves, treedef = jax.tree.flatten((scene, start, lax.stop_gradient(ts), extra))
+    states, said = by_columns(lambda p: solve(*jax.tree.unflatten(treedef, p)), leaves)
     if moving_times:
-        step = taylor(order_for(rtol, atol), rtol, atol).step
         late = ts - lax.stop_gradient(ts)
-        states = jax.vmap(partial(_later(step), scene))(states, late)
-    return states, end
+        states = jax.vmap(partial(_later, scene))(states, late)
+    return states, said
 
 
-def _later(step):
-    """`step` for an h that is zero, whose derivatives are not."""
+@jax.custom_jvp
+def _later(scene: Scene, state: State, h: Scalar) -> State:
+    """The state after an h that is zero, whose derivatives are not."""
+    return state
 
-    @jax.custom_jvp
-    def later(scene, state, h):
-        return state
 
-    @later.defjvp
-    def _(primals, tangents):
-        return later(*primals), jax.jvp(step, primals, tangents)[1]
+@_later.defjvp
+def _(primals, tangents):
+    step = taylor(_LATER, 1.0, 1.0).step
+    return _later(*primals), jax.jvp(step, primals, tangents)[1]
 
-    return later
+
+_LATER = 6  # derivatives in the time are right up to this order
 
 
 def march(
@@ -93,12 +100,12 @@ def march(
 
     def to_next(at: March, t):
         if slow is None:
-            at = _until(full, scene, at, t, max_steps)
+            at = until(full, scene, at, t, max_steps)
         else:
             relaxed = _relaxed(scene)
             target = jnp.where(t > 0, jnp.maximum(at.t, jnp.minimum(t, relaxed)), t)
-            at = _until(full, scene, at, target, max_steps)
-            at = _until(slow, scene, at, t, max_steps)
+            at = until(full, scene, at, target, max_steps)
+            at = until(slow, scene, at, t, max_steps)
         return at, (at.state, at.going & (at.t == t))
 
     zero = jnp.zeros_like(ts[0])
@@ -113,7 +120,7 @@ def _relaxed(scene: Scene):
     return lax.stop_gradient(jnp.where(is_overdamped(scene), 64 / scene.beta, jnp.inf))
 
 
-def _until(method: Method, scene: Scene, at: March, target: Scalar, max_steps: Array) -> March:
+def until(method: Method, scene: Scene, at: March, target: Scalar, max_steps: Array) -> March:
     """Steps to `target`, unless `most` have been taken or one can't be."""
     direction = lax.stop_gradient(jnp.sign(target - at.t))
 

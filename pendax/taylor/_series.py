@@ -57,7 +57,7 @@ def order_for(rtol: float, atol: float) -> int:
 
 def taylor(order: int, rtol: float, atol: float) -> Method:
     """Steps of given `order`, errors within atol + rtol |y| in θ and in v each."""
-    return method(partial(_scaled_series, order), order, rtol, atol)
+    return method(partial(scaled_series, order), order, rtol, atol)
 
 
 def method(series: Callable, order: int, rtol: float, atol: float, cut: Callable = stage) -> Method:
@@ -65,19 +65,19 @@ def method(series: Callable, order: int, rtol: float, atol: float, cut: Callable
 
     def theta_after(scene, state, h):
         rate, v = series(scene, state)
-        return state.theta + h * rate * _polynomial(_integrated(v[:-1]), h * rate)
+        return state.theta + h * rate * polynomial(integrated(v[:-1]), h * rate)
 
     def v_after(scene, state, h):
         # On a slow manifold the series starts from a v of its own.
         rate, v = series(scene, state)
-        return rate * (v[0] + h * rate * _polynomial(v[1:], h * rate))
+        return rate * (v[0] + h * rate * polynomial(v[1:], h * rate))
 
     def step(scene, state, h):
         return State(cut(theta_after, scene, state, h), cut(v_after, scene, state, h))
 
     def size_of(scene, state):
         rate, v = series(scene, state)
-        theta = _integrated(v)
+        theta = integrated(v)
         allowed = [atol + rtol * jnp.abs(x) for x in state]
 
         def within(n):
@@ -100,11 +100,11 @@ def plain(function: Callable, *arguments):
     return function(*arguments)
 
 
-def _integrated(v):
+def integrated(v):
     return [x / (n + 1) for n, x in enumerate(v)]
 
 
-def _polynomial(coefficients, h):
+def polynomial(coefficients, h):
     total = coefficients[-1]
     for x in coefficients[-2::-1]:
         total = total * h + x
@@ -112,7 +112,7 @@ def _polynomial(coefficients, h):
 
 
 @partial(jax.jit, static_argnums=0)  # traced once
-def _scaled_series(order: int, scene: Scene, state: State):
+def scaled_series(order: int, scene: Scene, state: State):
     rate = jnp.sqrt(scene.epsilon)
     for other in (jnp.abs(state.v), scene.beta):
         rate = rate if other is None else jnp.maximum(rate, other)
