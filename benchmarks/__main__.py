@@ -27,6 +27,11 @@ def main() -> int:
     motion.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
     lean = commands.add_parser("lean", help="operations of the compiled scene, against paper")
     lean.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
+    damped = commands.add_parser("damped", help="damped and driven scenes, against 30 digits")
+    damped.add_argument("--seed", type=int, default=1, help="draws other scenes")
+    damped.add_argument("--scenes", type=int, default=1000, help="random scenes")
+    damped.add_argument("--rounds", type=int, default=15, help="timings of each, interleaved")
+    damped.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
     options = vars(parser.parse_args())
 
     import jax

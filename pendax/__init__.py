@@ -15,6 +15,7 @@ Angles are in radians; `help` of each name has the rest.
 from importlib import import_module
 
 from . import special as special
+from ._condition import condition as condition
 from ._critical import CriticalLaw as CriticalLaw
 from ._critical import CriticalSide as CriticalSide
 from ._critical import critical_law as critical_law

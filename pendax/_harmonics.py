@@ -53,16 +53,22 @@ def harmonics(
 @partial(jax.jit, static_argnums=0)
 def _harmonics(count: int, epsilon: FloatArray, v0: FloatArray, theta0: FloatArray):
     omega = angular_frequency(epsilon, v0, theta0)
-    base, rotates = _base(jnp.where(epsilon > 0, epsilon, jnp.nan), v0, theta0)
+    (base, decay, small), rotates = _base(jnp.where(epsilon > 0, epsilon, jnp.nan), v0, theta0)
     n = jnp.arange(1, count + 1, dtype=base.dtype).reshape((1,) * base.ndim + (count,))
-    power = base[..., None] ** n
+    # Near the separatrix a base that is rounded and raised to the n would lose n roundings.
+    raised = jnp.where(small, base, 0.5)[..., None] ** n
+    power = jnp.where(small[..., None], raised, jnp.exp(-n * decay[..., None]))
     amplitude = jnp.where(rotates, 4, 8)[..., None] * power / (n * (1 + power * power))
     even = (n % 2 == 0) & ~rotates[..., None]
     return omega, jnp.where(even, 0, amplitude)
 
 
 def _base(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray):
-    """√q(m) in libration and q(1/m) in rotation, and which of the two."""
+    """√q(m) in libration and q(1/m) in rotation; and which of the two.
+
+    The first as a number where m1 ≥ ½ (or what stands for it in rotation), as the negative
+    of its logarithm elsewhere.
+    """
     root = jnp.sqrt(epsilon)
     sin, cos, _ = half_angle(theta0)
     m1 = gap_of(4 * epsilon, v0, sin, cos) / (4 * epsilon)
@@ -76,8 +82,8 @@ def _base(epsilon: FloatArray, v0: FloatArray, theta0: FloatArray):
     near_bottom = k * jnp.sqrt(over_p / 16)
     endless = m1 == 0
     length = log_nome(nome16(ladder(jnp.where(small | endless, 0.25, m1))))
-    near_one = jnp.exp(-0.5 * jnp.pi**2 / length)
-    # At the separatrix 1, and no derivative, rather than 0 for an infinite one.
-    near_one = jnp.where(endless, 1 - jnp.sqrt(m1), near_one)
-    base = jnp.where(small, near_bottom, near_one)
-    return jnp.where(rotates, base * base, base), rotates
+    decay = 0.5 * jnp.pi**2 / length
+    # At the separatrix 0, and no derivative, rather than 0 for an infinite one.
+    decay = jnp.where(endless, jnp.sqrt(m1), decay)
+    base = jnp.where(rotates, near_bottom * near_bottom, near_bottom)
+    return (base, jnp.where(rotates, 2 * decay, decay), small), rotates

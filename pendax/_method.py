@@ -69,7 +69,6 @@ class TaylorSeries(Method):
 class Averaged(Method):
     """For β far below √ε, without torque, over many turns."""
 
-    moving_times: bool = eqx.field(static=True)
     name: str = eqx.field(static=True, default="averaging over turns")
 
     def __call__(self, scene, times, v0, theta0, t0):
@@ -78,9 +77,7 @@ class Averaged(Method):
         def solve(scene, start, ts, _):
             return averaged(scene, start, ts)
 
-        states, error = with_derivatives(
-            solve, terms, start, times - t0, None, self.moving_times
-        )
+        states, error = with_derivatives(solve, terms, start, times - t0, None, False)
         # Nothing is left to be averaged where it hangs at rest, or has not begun.
         still = (times == t0) | ((v0 == 0) & (theta0 == 0))
         theta = jnp.where(still, theta0, states.theta)
@@ -98,68 +95,91 @@ class Diffrax(Method):
     name: str = eqx.field(static=True)
 
     def __call__(self, scene, times, v0, theta0, t0):
+        from diffrax import AbstractImplicitSolver
+
         from .solvers import integrate
 
-        return integrate(scene, times, v0, theta0, t0, solver=self.solver, **self.options)
+        *motion, result, stats = integrate(
+            scene, times, v0, theta0, t0, solver=self.solver, **self.options
+        )
+        if scene.beta is not None and not isinstance(self.solver, AbstractImplicitSolver):
+            # No explicit step is stable that is many times 1/β.
+            hopeless = scene.beta * jnp.max(jnp.abs(times - t0)) > 4 * self.options["max_steps"]
+            stiff = hopeless & (result == Result.too_many_steps)
+            result = Result.where(stiff, Result.too_stiff, result)
+        return *motion, result, stats
 
 
 def choose(
-    pendulum: Pendulum, ts, t0, v0, solver: Any, options: dict[str, Any], moving_times: bool
+    pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str, Any]
 ) -> Method:
-    """A named solver, or diffrax's options, are diffrax's; else the scene decides."""
-    overdamped = _overdamped(pendulum)
+    """A named solver, or diffrax's options, are diffrax's; else the scene decides.
+
+    By what can be seen of it: under a transformation programs are general.
+    """
+    span = None if _hidden(ts, t0) else np.subtract(*_together(_widest(ts), t0))
     named = ("stepsize_controller", "dt0", "adjoint")
     if not callable(pendulum.tau) and solver is None and all(options[x] is None for x in named):
-        if not moving_times and _barely_damped(pendulum, ts - t0):
-            return Averaged(moving_times)
+        if span is not None and _barely_damped(pendulum, span, dtype):
+            return Averaged()
         most = options["max_steps"]
         return TaylorSeries(
             options["rtol"],
             options["atol"],
             None if most is None else jnp.asarray(min(most, 2**31 - 128), jnp.int32),
-            stiff=overdamped is not False,
-            moving_times=moving_times,
+            stiff=_overdamped(pendulum) is not False,
+            moving_times=span is None,
         )
     import diffrax as dfx
 
     if solver is None:
-        solver = dfx.Kvaerno5() if overdamped else dfx.Dopri8()
+        solver = dfx.Kvaerno5() if _overdamped(pendulum) else dfx.Dopri8()
     if options["max_steps"] is None:
-        options = options | {"max_steps": _enough(pendulum, ts, t0, v0)}
+        options = options | {"max_steps": _enough(pendulum, span, v0)}
     return Diffrax(solver, options, type(solver).__name__)
 
 
-def _barely_damped(pendulum: Pendulum, since) -> bool:
+def _hidden(*terms) -> bool:
+    return any(isinstance(x, Tracer) for x in terms)
+
+
+def _together(*terms):
+    return np.broadcast_arrays(*(np.asarray(x, float) for x in terms))
+
+
+def _widest(ts):
+    """The time that is farthest away; of none at all, some."""
+    ts = np.atleast_1d(np.asarray(ts, float))
+    return ts[np.argmax(np.abs(ts))] if ts.size else 0.0
+
+
+def _barely_damped(pendulum: Pendulum, span, dtype) -> bool:
     """Whether all lanes are, and a step at a time would take long."""
-    terms = (pendulum.epsilon, pendulum.beta, since)
-    if pendulum.tau is not None or pendulum.beta is None or since.dtype != jnp.float64:
+    epsilon, beta = pendulum.epsilon, pendulum.beta
+    if pendulum.tau is not None or beta is None or dtype != jnp.float64 or _hidden(epsilon, beta):
         return False
-    if any(isinstance(x, Tracer) for x in terms):
-        return False
-    root = np.sqrt(np.asarray(pendulum.epsilon))
-    beta = np.asarray(pendulum.beta)
+    root, beta = _together(np.sqrt(np.asarray(epsilon)), beta)
     weak = np.all((beta > 0) & (beta <= 3e-4 * root))
-    return bool(weak and np.all(since >= 0) and np.max(since) * np.min(root) > 1e4)
+    return bool(weak and np.all(span > 0) and np.max(span) * np.min(root) > 1e4)
 
 
 def _overdamped(pendulum: Pendulum) -> bool | None:
-    """Whether any lane is; None where that can't be seen yet."""
+    """Whether any lane is; None where that can't be seen."""
     if pendulum.beta is None:
         return False
-    tau = None if callable(pendulum.tau) else pendulum.tau
-    terms = Scene(pendulum.epsilon, pendulum.beta, tau)
-    if any(isinstance(x, Tracer) for x in jax.tree.leaves(terms)):
-        return None
-    with jax.ensure_compile_time_eval():
-        return bool(np.any(is_overdamped(terms)))
+    tau = 0.0 if pendulum.tau is None or callable(pendulum.tau) else pendulum.tau
+    terms = pendulum.epsilon, pendulum.beta, tau
+    return None if _hidden(*terms) else bool(np.any(is_overdamped(Scene(*_together(*terms)))))
 
 
-def _enough(pendulum: Pendulum, ts, t0, v0) -> int:
-    """`budget` for what can be seen, a power of two: each new one is compiled."""
-    tau = None if callable(pendulum.tau) else pendulum.tau
-    terms = Scene(pendulum.epsilon, pendulum.beta, tau)
-    if any(isinstance(x, Tracer) for x in jax.tree.leaves((terms, ts, t0, v0))):
+def _enough(pendulum: Pendulum, span, v0) -> int:
+    """Ten times Taylor's `budget` for what can be seen, a power of two: each is compiled."""
+    tau = 0.0 if pendulum.tau is None or callable(pendulum.tau) else pendulum.tau
+    beta = 0.0 if pendulum.beta is None else pendulum.beta
+    terms = pendulum.epsilon, beta, tau, v0
+    if span is None or _hidden(*terms):
         return 2**20
+    epsilon, beta, tau, v0, span = _together(*terms, span)
     with jax.ensure_compile_time_eval():
-        steps = float(np.nan_to_num(jnp.max(budget(terms, State(v0, v0), ts - t0))))
-    return 2 ** int(np.clip(np.ceil(np.log2(10 * steps)), 16, 30))
+        steps = budget(Scene(epsilon, beta, tau), State(v0, v0), span)
+        return 2 ** int(np.clip(np.ceil(np.log2(10 * float(np.max(np.asarray(steps))))), 16, 24))

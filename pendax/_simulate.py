@@ -144,7 +144,7 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     require("dt0", options["dt0"], "a step other than zero", lambda x: x != 0)
     if options["max_steps"] is not None:
         options["max_steps"] = whole("max_steps", options["max_steps"], 1)
-    seen = concrete(ts) is not None and concrete(t0) is not None
+    given = ts, t0, v0
     (ts,) = common(ts=ts)
     if ts.ndim > 1:
         raise ValueError(f"Argument `ts` must have one axis at most, but got shape {ts.shape}.")
@@ -163,7 +163,7 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     options["atol"] = options["atol"] or options["rtol"]
     if options["dt0"] is not None:
         options["dt0"] = jnp.asarray(options["dt0"], dtype)
-    method = choose(pendulum, ts, t0, v0, solver, options, moving_times=not seen)
+    method = choose(pendulum, *given, dtype, solver, options)
     shape = lanes["v0"].shape
     if ts.size == 0:
         empty, none = jnp.zeros(shape + ts.shape, dtype), jnp.zeros(shape, bool)
@@ -182,7 +182,9 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     flat = {name: x.astype(dtype).reshape(-1) for name, x in lanes.items()}
     theta, v, result, stats = _solved(pendulum, jnp.atleast_1d(times), flat, method)
     bad = bad.reshape(-1)
-    theta, v = (jnp.where(bad[:, None], jnp.nan, x) for x in (theta, v))
+    theta, v = (
+        jnp.where(bad[:, None] | jnp.isinf(theta), jnp.nan, x) for x in (theta, v)
+    )
     result = jax.vmap(Result.where, in_axes=(0, None, 0))(bad, Result.not_a_number, result)
     if throw:
         for how, cure in _CURES:

@@ -103,7 +103,7 @@ def test_failures_are_reported():
         ({"dt0": 0.1}, "`dt0` must come with a `solver`"),
         ({"rtol": 1e-3}, "`rtol` must come with a `solver`"),
         ({"solver": dfx.SemiImplicitEuler()}, "`dt0` must be given with SemiImplicitEuler"),
-        ({"solver": dfx.Dopri8(), "rtol": -1.0}, "`rtol` must be positive"),
+        ({"solver": dfx.Dopri8(), "rtol": -1.0}, "`rtol` must be one positive number"),
         ({"solver": dfx.Dopri8(), "dt0": 0.0}, "`dt0` must be a step other than zero"),
         ({"solver": dfx.Dopri8(), "t0": 5.0}, "`ts` must be monotone and away from `t0`"),
         ({"solver": dfx.Dopri8}, "`solver` must be a solver of diffrax"),

@@ -52,7 +52,7 @@ class Method(NamedTuple):
 
 def order_for(rtol: float, atol: float) -> int:
     """−½ ln(tolerance) or a little less: time to run is flat there, time to compile is not."""
-    return max(6, min(20, round(-0.45 * math.log(min(rtol, atol)))))
+    return max(10, min(20, round(-0.45 * math.log(min(rtol, atol)))))
 
 
 def taylor(order: int, rtol: float, atol: float) -> Method:
