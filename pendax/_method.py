@@ -123,9 +123,11 @@ def choose(
         if span is not None and _barely_damped(pendulum, span, dtype):
             return Averaged()
         most = options["max_steps"]
+        # A step more or less to the last digit: tolerances cost little here.
+        rtol = options["rtol"] or float(jnp.finfo(dtype).eps) ** 0.9
         return TaylorSeries(
-            options["rtol"],
-            options["atol"],
+            rtol,
+            options["atol"] or rtol,
             None if most is None else jnp.asarray(min(most, 2**31 - 128), jnp.int32),
             stiff=_overdamped(pendulum) is not False,
             moving_times=span is None,
@@ -134,6 +136,8 @@ def choose(
 
     if solver is None:
         solver = dfx.Kvaerno5() if _overdamped(pendulum) else dfx.Dopri8()
+    rtol = options["rtol"] or float(jnp.finfo(dtype).eps) ** 0.75
+    options = options | {"rtol": rtol, "atol": options["atol"] or rtol}
     if options["max_steps"] is None:
         options = options | {"max_steps": _enough(pendulum, span, v0)}
     return Diffrax(solver, options, type(solver).__name__)

@@ -76,3 +76,69 @@ def _sum(coefficients, h):
     for x in coefficients[-2::-1]:
         total = total * h + x
     return total.mid()
+
+
+_STAGES = 10
+
+
+def overdamped(epsilon, beta, tau, theta0, v0, ts):
+    """Rows (θ, v) for large β: Gauss's collocation of order 20, A-stable, in Arb.
+
+    Steps are 1/β until what relaxes is below 1e-30, then grow to a quarter of β/ε.
+    """
+    with flint.ctx.workprec(BITS):
+        nodes, weights = _collocation()
+        epsilon, beta, tau, theta, v = map(flint.arb, (epsilon, beta, tau, theta0, v0))
+        t, rows, h = flint.arb(0), [], 1 / beta
+        for target in map(flint.arb, ts):
+            while t < target:
+                if t > 70 / beta:
+                    h = min(1.4 * h, beta / (4 * (epsilon + abs(tau))), key=float)
+                step = h if h < target - t else target - t
+                theta, v = _collocated(epsilon, beta, tau, theta, v, step, nodes, weights)
+                t = target if step is not h else (t + h).mid()
+            rows.append([float(theta), float(v)])
+    return rows
+
+
+def _collocation():
+    """A, of ∫_0^{c_i}, and b, of ∫_0^1, at Gauss's nodes."""
+    x = [(1 + flint.arb.legendre_p_root(_STAGES, k)) / 2 for k in range(_STAGES)]
+    powers = flint.arb_mat([[c**j for j in range(_STAGES)] for c in x])
+    inverse = powers.inv()
+    ends = [*x, flint.arb(1)]
+    moments = flint.arb_mat([[c ** (j + 1) / (j + 1) for j in range(_STAGES)] for c in ends])
+    rule = (moments * inverse).tolist()
+    return rule[:-1], rule[-1]
+
+
+def _collocated(epsilon, beta, tau, theta, v, h, rule, weights):
+    """Stages θ_i of θ = θ0 + h Σ a v, with v = v0 + h Σ a (τ − ε sin θ − β v), by Newton."""
+    count = range(_STAGES)
+    a = flint.arb_mat(rule)
+    one = flint.arb_mat(_STAGES, _STAGES, [int(i == j) for i in count for j in count])
+    ones = flint.arb_mat(_STAGES, 1, [1] * _STAGES)
+    # v = (1 + h β A)⁻¹ (v0 + h A f), so that θ alone is left.
+    relax = (one + a * (h * beta)).inv().mid()
+    to_v = relax * a * h
+    free = relax * ones * v
+    to_theta = a * h
+    stages = ones * theta
+    for _ in range(40):
+        force = flint.arb_mat(_STAGES, 1, [tau - epsilon * x[0].sin() for x in stages.tolist()])
+        miss = stages - ones * theta - to_theta * (free + to_v * force)
+        slope = flint.arb_mat(_STAGES, _STAGES)
+        for i, x in enumerate(stages.tolist()):
+            slope[i, i] = -epsilon * x[0].cos()
+        stages = (stages - (one - to_theta * to_v * slope).solve(miss)).mid()
+        if all(abs(x[0].mid()) < 1e-34 for x in miss.tolist()):
+            break
+    force = flint.arb_mat(_STAGES, 1, [tau - epsilon * x[0].sin() for x in stages.tolist()])
+    vs = (free + to_v * force).tolist()
+    forces = force.tolist()
+    dtheta = sum((w * x[0] for w, x in zip(weights, vs, strict=True)), flint.arb(0))
+    dv = sum(
+        (w * (f[0] - beta * x[0]) for w, f, x in zip(weights, forces, vs, strict=True)),
+        flint.arb(0),
+    )
+    return (theta + h * dtheta).mid(), (v + h * dv).mid()

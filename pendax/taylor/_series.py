@@ -51,8 +51,8 @@ class Method(NamedTuple):
 
 
 def order_for(rtol: float, atol: float) -> int:
-    """−½ ln(tolerance) or a little less: time to run is flat there, time to compile is not."""
-    return max(10, min(20, round(-0.45 * math.log(min(rtol, atol)))))
+    """Below the −½ ln(tolerance) of least work: that is flat there, and programs are smaller."""
+    return max(10, min(16, round(-0.37 * math.log(min(rtol, atol)))))
 
 
 def taylor(order: int, rtol: float, atol: float) -> Method:
