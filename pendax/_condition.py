@@ -9,7 +9,7 @@ from jaxtyping import Array, ArrayLike, Float
 
 from ._arrays import common
 from ._pendulum import Pendulum
-from ._simulate import simulate
+from ._simulate import require_monotone, simulate
 
 
 def condition(
@@ -41,7 +41,7 @@ def condition(
     (ts,) = common(ts=ts)
     if ts.ndim > 1:
         raise ValueError(f"Argument `ts` must have one axis at most, but got shape {ts.shape}.")
-    simulate(pendulum, ts[..., None][:0].reshape(0), v0, theta0, t0=t0, **options)
+    require_monotone(ts, t0)
     return _condition(pendulum, ts, v0, theta0, t0, options)
 
 
@@ -74,15 +74,16 @@ def _condition(pendulum, ts, v0, theta0, t0, options):
 
         return jax.vmap(along, out_axes=-1)(jnp.eye(2, dtype=times.dtype))
 
-    starts = before(t0, times + 0 * lanes[..., None])
+    each = times.reshape((1,) * lanes.ndim + times.shape)
+    starts = before(t0, each + 0 * lanes[..., None])
     matrices = jax.vmap(between)(
         starts, times, before(theta0, run.theta), before(v0, run.v)
     )  # times, 2, *lanes, 2
     matrices = jnp.moveaxis(matrices, 1, -2)
 
     def onwards(products, i):
-        unit = jnp.zeros_like(products[0]) + jnp.eye(2, dtype=times.dtype)
-        products = products.at[i].set(unit)
+        unit = jnp.eye(2, dtype=times.dtype)
+        products = products.at[i].set(jnp.broadcast_to(unit, products[0].shape))
         products = jnp.einsum("...ab,n...bc->n...ac", matrices[i], products)
         return products, jnp.max(_norm(products), 0)
 

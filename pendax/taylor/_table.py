@@ -40,8 +40,8 @@ def tabulated(f, first: Scalar, last: Scalar, integrands: int) -> tuple[Table, S
     """Of the first values of the array `f(s)`; and its last value at `first`."""
     width = (last - first) / _PANELS
     middles = first + width * (jnp.arange(_PANELS, dtype=first.dtype) + 0.5)
-    s = middles[:, None] + 0.5 * width * jnp.asarray(_NODES, first.dtype)
-    everything = jax.vmap(f)(jnp.append(s, first))
+    s = middles[:, None] + 0.5 * width * jnp.asarray(_NODES, first.dtype)[None]
+    everything = jax.vmap(f)(jnp.append(s.ravel(), first))
     values = jnp.moveaxis(everything[:-1, :integrands], -1, 0).reshape(integrands, *s.shape)
     coefficients = jnp.einsum("nk,fpk->fpn", jnp.asarray(_TO_LEGENDRE, first.dtype), values)
     each = width * coefficients[:, :, 0]
@@ -63,7 +63,7 @@ def where_integral(table: Table, which: int, value: Scalar) -> Scalar:
         slope = 0.5 * table.width * _values(table.coefficients[which, panel], x)
         miss = _within(table, panel, x)[which] - value
         x = jnp.clip(x - jnp.where(slope > 0, miss / jnp.where(slope > 0, slope, 1), 0), -1, 1)
-    return table.first + table.width * (panel + 0.5 * (x + 1))
+    return table.first + table.width * (panel.astype(x.dtype) + 0.5 * (x + 1))
 
 
 def _place(table: Table, s: Scalar):

@@ -1,0 +1,165 @@
+"""Constant torque: random scenes, derivatives and overdamped ones against 30 digits."""
+
+import damped_references as references
+import diffrax as dfx
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pytest
+
+from pendax import Pendulum, Result, condition, simulate
+
+NAMES = ("epsilon", "beta", "tau", "theta0", "v0")
+
+
+def draw(seed, count, dtype=np.float64):
+    """Rows ε, β, τ, θ0, v0, numbers of the dtype."""
+    rng = np.random.default_rng(seed)
+    rows = [
+        np.ones(count),
+        10 ** rng.uniform(-3, 1, count),
+        rng.uniform(-2, 2, count),
+        rng.uniform(-np.pi, np.pi, count),
+        rng.uniform(-4, 4, count),
+    ]
+    return np.stack(rows, 1).astype(dtype)
+
+
+@pytest.mark.parametrize(
+    ("seed", "count"), [(1, 12), pytest.param(2, 300, marks=pytest.mark.full)]
+)
+def test_random_scenes(seed, count, dtype):
+    """Within 50 × tolerance × (1 + max|y|) (1 + κ), for every tolerance."""
+    rows = draw(seed, count, dtype)
+    ts = np.arange(1, 101, dtype=dtype)
+    saved = ts[9::10].astype(float)
+    true = np.array([references.trajectory(*row, saved) for row in rows.astype(float)])
+    epsilon, beta, tau, theta0, v0 = jnp.asarray(rows.T)
+    scene = Pendulum(epsilon, beta, tau)
+    kappa = np.asarray(condition(scene, ts, v0, theta0))[:, 9::10]
+    tolerances = (1e-4, 1e-8, 1e-13) if dtype == np.float64 else (1e-6,)
+    for rtol in tolerances:
+        run = simulate(scene, ts, v0, theta0, rtol=rtol)
+        assert run.method == "Taylor series"
+        states = np.stack([run.theta, run.v], -1).astype(float)
+        largest = np.maximum.accumulate(np.abs(states).max(-1), 1)[:, 9::10]
+        error = np.abs(states[:, 9::10] - true).max(-1)
+        assert (error / (rtol * (1 + largest) * (1 + kappa))).max() < 50
+
+
+def test_derivatives():
+    """Gradients within 1e-8, Hessians within 1e-6 of their scales, in every mode."""
+    rows = draw(5, 4)
+    ts, step = [20.0], 1e-5
+
+    def last(x):
+        return simulate(Pendulum(x[0], x[1], x[2]), ts[0], x[4], x[3]).theta
+
+    gradients = {mode: jax.jit(mode(last)) for mode in (jax.jacfwd, jax.grad)}
+    hessian = jax.jit(jax.hessian(last))
+    for row in rows:
+        true = np.array(references.trajectory(*row, ts, NAMES)[0])
+        slopes = true[2::2]
+        moved = []
+        for unit in np.eye(5) * step:
+            near, far = (
+                np.subtract(*(references.trajectory(*x, ts, NAMES)[0][2::2] for x in ends))
+                / (ends[0] - ends[1]).sum()
+                for ends in ((row + unit, row - unit), (row + 2 * unit, row - 2 * unit))
+            )
+            moved.append((4 * near - far) / 3)
+        curvature = np.array(moved)
+        size = np.abs(row)
+        scale = np.abs(slopes) + np.abs(curvature) @ size
+        scale = scale + (np.abs(true[0]) + np.abs(slopes) @ size) / np.maximum(size, 1)
+        for gradient in gradients.values():
+            assert (np.abs(gradient(row) - slopes) < 1e-8 * scale).all()
+        assert np.abs(hessian(row) - curvature).max() < 1e-6 * np.abs(curvature).max()
+
+
+def test_memory_of_a_gradient_does_not_grow_with_the_steps():
+    def memory(t):
+        gradient = jax.grad(lambda v0: simulate(Pendulum(1.0, 1e-3, 0.1), t, v0, throw=False).theta)
+        return jax.jit(gradient).lower(1.0).compile().memory_analysis().temp_size_in_bytes
+
+    assert memory(1e4) == memory(1.0)
+
+
+@pytest.mark.parametrize("tau", [0.5, 1.5])
+@pytest.mark.parametrize("beta", [1e3, 1e5, 1e8])
+def test_overdamped(beta, tau, dtype):
+    """Right to the tolerance, in steps that don't grow with β."""
+    beta = float(dtype.type(beta))
+    ts = [float(dtype.type(x)) for x in (3 / beta, 100 / beta, 0.01 * beta, beta, 10 * beta)]
+    true = np.array(references.overdamped(1.0, beta, tau, 0.5, 2.0, ts))
+    scene = Pendulum(*(jnp.asarray(x, dtype) for x in (1.0, beta, tau)))
+    start = jnp.asarray(2.0, dtype), jnp.asarray(0.5, dtype)
+    for rtol, most in ((1e-6, 100), (1e-12, 300)) if dtype == np.float64 else ((1e-6, 100),):
+        run = simulate(scene, jnp.asarray(ts, dtype), *start, rtol=rtol)
+        assert int(run.stats["steps"]) < most
+        error = np.abs(np.stack([run.theta, run.v], 1) - true).max()
+        assert error < 50 * rtol * (1 + np.abs(true).max())
+    # A velocity is right relatively, where the angle still moves.
+    np.testing.assert_allclose(run.v[2], true[2, 1], rtol=1e-4)
+
+
+def test_overdamped_slopes():
+    """∂θ/∂β and ∂θ/∂v0 at β = 1e3, against differences of the reference."""
+
+    def last(x):
+        return simulate(Pendulum(1.0, x[0], 0.5), 700.0, x[1], 0.5).theta
+
+    x, step = np.array([1e3, 2.0]), np.array([1e-2, 1e-3])
+    got = jax.grad(last)(x)
+    for i in range(2):
+        ends = [x + sign * step[i] * np.eye(2)[i] for sign in (1, -1)]
+        up, down = (references.overdamped(1.0, y[0], 0.5, 0.5, y[1], [700.0])[0] for y in ends)
+        np.testing.assert_allclose(got[i], (up[0] - down[0]) / (2 * step[i]), rtol=1e-8)
+
+
+def test_what_fails_says_so():
+    scene, ts = Pendulum(1.0, 0.1, 0.5), jnp.array([1.0, 1e3])
+    run = simulate(scene, ts, 1.0, max_steps=20, throw=False)
+    assert run.result == Result.too_many_steps
+    assert jnp.isnan(run.theta).tolist() == [False, True]
+    with pytest.raises(RuntimeError, match="Raise `max_steps`"):
+        simulate(scene, ts, 1.0, max_steps=20)
+    options = {"solver": dfx.Dopri8(), "max_steps": 1000, "throw": False}
+    run = simulate(Pendulum(1.0, 1e5, 0.5), 1e6, 1.0, **options)
+    assert run.result == Result.too_stiff
+    assert jnp.isnan(run.theta)
+    with pytest.raises(ValueError, match="`max_steps` must be 1 or more"):
+        simulate(scene, ts, 1.0, max_steps=0)
+    for name in ("rtol", "atol"):
+        with pytest.raises(ValueError, match=f"`{name}` must be one positive number"):
+            simulate(scene, ts, 1.0, **{name: 0.0})
+
+
+def test_the_scene_chooses():
+    def method(*terms, t=10.0, **options):
+        return simulate(Pendulum(*terms), t, 1.0, throw=False, **options).method
+
+    assert method(1.0) == "closed form"
+    assert method(1.0, 0.1, 0.2) == method(1.0, None, 0.2) == method(1.0, 1e5) == "Taylor series"
+    assert method(1.0, 0.1, jnp.sin) == "Dopri8"
+    assert method(1.0, 1e5, jnp.sin) == "Kvaerno5"
+    assert method(1.0, 0.1, rtol=1e-3, dt0=0.1) == "Dopri8"
+    assert method(1.0, 0.1, solver=dfx.Tsit5(), rtol=1e-3) == "Tsit5"
+    assert method(1.0, 1e-5, t=1e5) == "averaging over turns"
+
+
+def test_at_rest_and_huge():
+    """Exactly at the bottom, under a torque of 1e6, at v0 = 1e6, and τ = ε to 1e-12."""
+    still = simulate(Pendulum(1.0, 0.1), jnp.array([1.0, 1e3]), 0.0)
+    assert (still.theta == 0).all()
+    for terms, start, t in (
+        ((1.0, 0.5, 1e6), (0.0, 0.0), 0.01),
+        ((1.0, 0.5, 0.0), (0.3, 1e6), 1e-4),
+        ((1.0, 0.3, 1 + 1e-12), (0.1, 0.0), 30.0),
+        ((1e-12, 1e-7, 3e-13), (0.1, 1e-6), 1e7),
+        ((1e12, 1e5, 3e11), (0.1, 1e6), 1e-5),
+    ):
+        run = simulate(Pendulum(*terms), t, start[1], start[0])
+        true = np.array(references.trajectory(*terms, *start, [t])[0])
+        error = np.abs(np.array([run.theta, run.v]) - true) / (1 + np.abs(true))
+        assert error.max() < 1e-11, terms
