@@ -56,7 +56,9 @@ def random_scenes(seed: int, count: int) -> int:
     """Errors over tolerance × (1 + max|y|) × (1 + κ), of which 50 are allowed."""
     missed = 0
     print(f"\n{count} random scenes to t = 100 (seed {seed}): error over the scale, bar 50")
-    print(f"{'':8} {'rtol':>7} {'median':>9} {'largest':>9} {'missed':>7} {'failed':>7} {'steps':>7}")
+    print(
+        f"{'':8} {'rtol':>7} {'median':>9} {'largest':>9} {'missed':>7} {'failed':>7} {'steps':>7}"
+    )
     for dtype, exponents in ((np.float64, range(-4, -14, -1)), (np.float32, (-6,))):
         rows = draw(seed, count, dtype)
         true = true_rows(rows)

@@ -20,7 +20,7 @@ def condition(
     *,
     t0: ArrayLike = 0.0,
     **options: Any,
-) -> Float[Array, "*lanes times"]:
+) -> Float[Array, "*lanes_and_times"]:
     """κ(t), the largest norm of ∂(θ, v/√ε)(t) / ∂(θ, v/√ε)(s) over earlier times s.
 
     A change of 1e-12 rad somewhere on the way, be it a rounding or a solver's error, is one of

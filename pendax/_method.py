@@ -110,9 +110,7 @@ class Diffrax(Method):
         return *motion, result, stats
 
 
-def choose(
-    pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str, Any]
-) -> Method:
+def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str, Any]) -> Method:
     """A named solver, or diffrax's options, are diffrax's; else the scene decides.
 
     By what can be seen of it: under a transformation programs are general.

@@ -134,7 +134,9 @@ def simulate(
     theta, v = widened(motion)(epsilon, times - t0, v0, theta0)
     lanes = tuple(range(theta.ndim - ts.ndim, theta.ndim))
     bad = ~jnp.all(jnp.isfinite(theta) & jnp.isfinite(v), axis=lanes)
-    return Trajectory(ts, theta, v, where(bad, Result.not_a_number, Result.successful), {}, "closed form")
+    return Trajectory(
+        ts, theta, v, where(bad, Result.not_a_number, Result.successful), {}, "closed form"
+    )
 
 
 def _lanes(ts: Float[Array, "..."], *lanes: ArrayLike) -> list[Float[Array, "..."]]:
@@ -191,9 +193,7 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     flat = {name: x.astype(dtype).reshape(-1) for name, x in lanes.items()}
     theta, v, result, stats = _solved(pendulum, jnp.atleast_1d(times), flat, method)
     bad = bad.reshape(-1)
-    theta, v = (
-        jnp.where(bad[:, None] | jnp.isinf(theta), jnp.nan, x) for x in (theta, v)
-    )
+    theta, v = (jnp.where(bad[:, None] | jnp.isinf(theta), jnp.nan, x) for x in (theta, v))
     result = jax.vmap(Result.where, in_axes=(0, None, 0))(bad, Result.not_a_number, result)
     if throw:
         for how, cure in _CURES:

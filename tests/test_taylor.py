@@ -25,9 +25,7 @@ def draw(seed, count, dtype=np.float64):
     return np.stack(rows, 1).astype(dtype)
 
 
-@pytest.mark.parametrize(
-    ("seed", "count"), [(1, 12), pytest.param(2, 300, marks=pytest.mark.full)]
-)
+@pytest.mark.parametrize(("seed", "count"), [(1, 12), pytest.param(2, 300, marks=pytest.mark.full)])
 def test_random_scenes(seed, count, dtype):
     """Within 50 × tolerance × (1 + max|y|) (1 + κ), for every tolerance."""
     rows = draw(seed, count, dtype)

@@ -73,7 +73,7 @@ def averaged(
 
 
 def _at(scene: Scene, start: State, ts, orders: Orders) -> State:
-    method = taylor(16, 1e-14, 1e-14)
+    method = taylor(10, 1e-14, 1e-14)
 
     def rest(at: Bottom, t):
         v = at.direction * jnp.sqrt(2 * at.energy)
@@ -87,7 +87,6 @@ def _at(scene: Scene, start: State, ts, orders: Orders) -> State:
 
 def sections(scene: Scene, start: State, ts, orders: Orders) -> Bottom:
     """For every time the last passage of the bottom, or nearly the last, before it."""
-    one_by_one = partial(_next, scene)
     first = _first(scene, start)
     first = first._replace(energy=first.energy * (1 + orders.energy))
     # Turning over, down to the neighbourhood of the separatrix.
@@ -100,13 +99,15 @@ def sections(scene: Scene, start: State, ts, orders: Orders) -> Bottom:
     whole = lax.stop_gradient(jnp.floor(rotation.table.total[0]))
     after_rotation = _along(scene, rotation, first, whole, whole >= 0, orders)
 
-    # Across it.
-    def cross(at, _):
-        after = one_by_one(at)
+    # Across it, with what the energy loses by rounding: the same, passage after passage.
+    def cross(carry, _):
+        at, low = carry
+        after, left = _next(scene, at, low)
         done = at.energy < top - near
-        return jax.tree.map(lambda x, y: jnp.where(done, x, y), at, after), at
+        return jax.tree.map(lambda x, y: jnp.where(done, x, y), carry, (after, left)), at
 
-    last, crossing = lax.scan(cross, after_rotation, length=3 * _NEAR)
+    begin = after_rotation, jnp.zeros_like(top)
+    (last, _), crossing = lax.scan(cross, begin, length=3 * _NEAR)
 
     # Swinging.
     e = last.energy / top
@@ -161,14 +162,18 @@ def _first(scene: Scene, start: State) -> Bottom:
     return jax.tree.map(lambda x, y: jnp.where(here, x, y), now, after)
 
 
-def _next(scene: Scene, at: Bottom) -> Bottom:
+def _next(scene: Scene, at: Bottom, low: Scalar) -> tuple[Bottom, Scalar]:
+    """The next passage; `low` is what the energy has below its last digit."""
     to = _from_bottom(scene, at.energy)
-    return Bottom(
+    change = low - scene.beta * to.action
+    energy = at.energy + change
+    after = Bottom(
         at.t + to.time,
-        at.energy - scene.beta * to.action,
+        energy,
         at.turns + jnp.where(to.over, at.direction, 0),
         jnp.where(to.over, at.direction, -at.direction),
     )
+    return after, change - (energy - at.energy)
 
 
 def _from_bottom(scene: Scene, energy: Scalar) -> Passage:

@@ -16,7 +16,7 @@ from ._series import Scene, State, integrated, polynomial, scaled_series
 
 Scalar = Float[Array, ""]
 
-_ORDER, _TOLERANCE = 14, 1e-15
+_ORDER, _TOLERANCE = 12, 1e-17
 
 
 class Passage(NamedTuple):
