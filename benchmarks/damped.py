@@ -178,7 +178,8 @@ def against_solvers(rounds: int) -> int:
     print("\n1,024 lanes to t = 100: microseconds a lane, and median error")
     for point in points:
         print(
-            f"{point.method:8} rtol {point.rtol:.0e} {point.seconds * 1e6:8.1f} µs {point.error:.1e}"
+            f"{point.method:8} rtol {point.rtol:.0e} "
+            f"{point.seconds * 1e6:8.1f} µs {point.error:.1e}"
         )
     _draw(points)
     at = {(p.method, p.rtol): p for p in points}

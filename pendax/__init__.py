@@ -2,7 +2,7 @@
 
     the scene        Pendulum, Pendulum.from_si, energy, potential, velocity, tension,
                      slack_angle, fixed_points
-    its motion       simulate, time_to, frequency, period, amplitude
+    its motion       simulate, condition, time_to, frequency, period, amplitude
     its spectrum     harmonics, power_spectrum
     its expansions   period_series, small_angle, critical_law, fit_critical_law
     its geometry     geometry

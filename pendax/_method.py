@@ -29,7 +29,7 @@ class Method(eqx.Module):
     name: eqx.AbstractVar[str]
 
     @abstractmethod
-    def __call__(self, scene: Pendulum, times, v0, theta0, t0): ...
+    def __call__(self, scene: Pendulum, times, v0, theta0, t0) -> Any: ...
 
 
 class TaylorSeries(Method):
@@ -42,7 +42,7 @@ class TaylorSeries(Method):
     moving_times: bool = eqx.field(static=True)
     name: str = eqx.field(static=True, default="Taylor series")
 
-    def __call__(self, scene, times, v0, theta0, t0):
+    def __call__(self, scene: Pendulum, times, v0, theta0, t0) -> Any:
         terms = Scene(scene.epsilon, scene.beta, scene.tau)
         start, since = State(theta0, v0), times - t0
         most = budget(terms, start, since)
@@ -71,7 +71,7 @@ class Averaged(Method):
 
     name: str = eqx.field(static=True, default="averaging over turns")
 
-    def __call__(self, scene, times, v0, theta0, t0):
+    def __call__(self, scene: Pendulum, times, v0, theta0, t0) -> Any:
         terms, start = Scene(scene.epsilon, scene.beta, None), State(theta0, v0)
 
         def solve(scene, start, ts, _):
@@ -94,7 +94,7 @@ class Diffrax(Method):
     options: dict[str, Any]
     name: str = eqx.field(static=True)
 
-    def __call__(self, scene, times, v0, theta0, t0):
+    def __call__(self, scene: Pendulum, times, v0, theta0, t0) -> Any:
         from diffrax import AbstractImplicitSolver
 
         from .solvers import integrate
@@ -118,15 +118,17 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
     span = None if _hidden(ts, t0) else np.subtract(*_together(_widest(ts), t0))
     named = ("stepsize_controller", "dt0", "adjoint")
     if not callable(pendulum.tau) and solver is None and all(options[x] is None for x in named):
-        if span is not None and _barely_damped(pendulum, span, dtype):
+        # Who speaks of steps wants them.
+        free = all(options[x] is None for x in ("rtol", "atol", "max_steps"))
+        if free and span is not None and _barely_damped(pendulum, span, dtype):
             return Averaged()
         most = options["max_steps"]
         # A step more or less to the last digit: tolerances cost little here.
         rtol = options["rtol"] or float(jnp.finfo(dtype).eps) ** 0.9
         return TaylorSeries(
-            rtol,
-            options["atol"] or rtol,
-            None if most is None else jnp.asarray(min(most, 2**31 - 128), jnp.int32),
+            rtol=rtol,
+            atol=options["atol"] or rtol,
+            max_steps=None if most is None else jnp.asarray(min(most, 2**31 - 128), jnp.int32),
             stiff=_overdamped(pendulum) is not False,
             moving_times=span is None,
         )
@@ -138,7 +140,7 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
     options = options | {"rtol": rtol, "atol": options["atol"] or rtol}
     if options["max_steps"] is None:
         options = options | {"max_steps": _enough(pendulum, span, v0)}
-    return Diffrax(solver, options, type(solver).__name__)
+    return Diffrax(solver=solver, options=options, name=type(solver).__name__)
 
 
 def _hidden(*terms) -> bool:

@@ -55,8 +55,8 @@ def simulate(
     - Neither damping nor torque: the closed form.
     - τ constant: Taylor's method for this equation; where β² > 4000 (ε + |τ|), on the slow curve
       v(θ) once v has relaxed to it, so that the steps don't grow with β.
-    - No torque, β ≤ 3e-4 √ε in all lanes and more than 10⁴/√ε to follow, in float64: averaging
-      over turns, some 0.1 s however long.
+    - No torque, β ≤ 3e-4 √ε in all lanes and more than 10⁴/√ε to follow, in float64 and with
+      neither `rtol`, `atol` nor `max_steps`: averaging over turns, some 0.2 s however long.
     - τ a function of t: diffrax's `Dopri8`, or its `Kvaerno5` where β is as large as above.
 
     Under a transformation β may be hidden: the program then has both of the second line's, and

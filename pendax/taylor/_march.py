@@ -7,7 +7,7 @@ from typing import Any, NamedTuple
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, ArrayLike, Bool, Float, Int
+from jaxtyping import Array, Bool, Float, Int
 
 from ._columns import by_columns
 from ._overdamped import is_overdamped, overdamped
@@ -120,7 +120,9 @@ def _relaxed(scene: Scene):
     return lax.stop_gradient(jnp.where(is_overdamped(scene), 64 / scene.beta, jnp.inf))
 
 
-def until(method: Method, scene: Scene, at: March, target: Scalar, max_steps: ArrayLike) -> March:
+def until(
+    method: Method, scene: Scene, at: March, target: Scalar, max_steps: Int[Array, ""] | int
+) -> March:
     """Steps to `target`, unless `most` have been taken or one can't be."""
     direction = lax.stop_gradient(jnp.sign(target - at.t))
 

@@ -11,6 +11,7 @@ like (β t)^n/n! from the last digit on; an implicit method, with its Jacobians 
 """
 
 from functools import partial
+from typing import Any
 
 import jax
 import jax.numpy as jnp
@@ -45,8 +46,10 @@ def _series(order: int, scene: Scene, state: State):
     tau = None if scene.tau is None else scene.tau / strength
 
     def sweep(_, before):
-        w, theta = [], [state.theta]
-        sines, cosines = [jnp.sin(state.theta)], [jnp.cos(state.theta)]
+        w: list[Any] = []
+        theta: list[Any] = [state.theta]
+        sines: list[Any] = [jnp.sin(state.theta)]
+        cosines: list[Any] = [jnp.cos(state.theta)]
         for n in range(order + 1):
             f = -epsilon * sines[n]
             if tau is not None and n == 0:

@@ -18,7 +18,7 @@ Jorba & Zou, Exp. Math. 14 (2005) 99.
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -33,14 +33,14 @@ Scalar = Float[Array, ""]
 class Scene(NamedTuple):
     """The parameters, a term that is `None` being absent."""
 
-    epsilon: Scalar
-    beta: Scalar | None
-    tau: Scalar | None
+    epsilon: Any
+    beta: Any
+    tau: Any
 
 
 class State(NamedTuple):
-    theta: Scalar
-    v: Scalar
+    theta: Any
+    v: Any
 
 
 class Method(NamedTuple):
@@ -125,8 +125,10 @@ def scaled_series(order: int, scene: Scene, state: State):
         None if scene.beta is None else scene.beta * unit,
         None if scene.tau is None else scene.tau * unit * unit,
     )
-    v = [state.v * unit]
-    theta, sines, cosines = [state.theta], [jnp.sin(state.theta)], [jnp.cos(state.theta)]
+    theta: list[Any] = [state.theta]
+    v: list[Any] = [state.v * unit]
+    sines: list[Any] = [jnp.sin(state.theta)]
+    cosines: list[Any] = [jnp.cos(state.theta)]
     for n in range(order):
         v.append(force(scaled, sines, v, n) / (n + 1))
         theta.append(v[n] / (n + 1))
