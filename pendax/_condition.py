@@ -21,7 +21,7 @@ def condition(
     t0: ArrayLike = 0.0,
     **options: Any,
 ) -> Float[Array, "*lanes_and_times"]:
-    """κ(t), the largest norm of ∂(θ, v/√ε)(t) / ∂(θ, v/√ε)(s) over earlier times s.
+    """κ(t), the largest norm of ∂(θ, v/√ε)(t) / ∂(θ, v/√ε)(s) over s from t0 to t.
 
     A change of 1e-12 rad somewhere on the way, be it a rounding or a solver's error, is one of
     some κ · 1e-12 rad at t: κ is about 1 for a damped fall into a well, grows like t for a swing,
@@ -85,7 +85,7 @@ def _condition(pendulum, ts, v0, theta0, t0, options):
         unit = jnp.eye(2, dtype=times.dtype)
         products = products.at[i].set(jnp.broadcast_to(unit, products[0].shape))
         products = jnp.einsum("...ab,n...bc->n...ac", matrices[i], products)
-        return products, jnp.max(_norm(products), 0)
+        return products, jnp.maximum(jnp.max(_norm(products), 0), 1)  # s = t among them
 
     nothing = jnp.zeros_like(matrices)
     _, kappa = jax.lax.scan(onwards, nothing, jnp.arange(times.size))

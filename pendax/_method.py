@@ -74,7 +74,7 @@ class Averaged(Method):
     def __call__(self, scene: Pendulum, times, v0, theta0, t0) -> Any:
         terms, start = Scene(scene.epsilon, scene.beta, None), State(theta0, v0)
 
-        def solve(scene, start, ts, _):
+        def solve(_, scene, start, ts, __):
             return averaged(scene, start, ts)
 
         states, error = with_derivatives(solve, terms, start, times - t0, None, False)
@@ -173,7 +173,10 @@ def _overdamped(pendulum: Pendulum) -> bool | None:
         return False
     tau = 0.0 if pendulum.tau is None or callable(pendulum.tau) else pendulum.tau
     terms = pendulum.epsilon, pendulum.beta, tau
-    return None if _hidden(*terms) else bool(np.any(is_overdamped(Scene(*_together(*terms)))))
+    if _hidden(*terms):
+        return None
+    with np.errstate(over="ignore"):
+        return bool(np.any(is_overdamped(Scene(*_together(*terms)))))
 
 
 def _enough(pendulum: Pendulum, span, v0) -> int:

@@ -1,5 +1,7 @@
 """θ̈ + β θ̇ + ε sin θ = τ to 30 digits: Taylor series of order 40 in Arb, with derivatives."""
 
+import math
+
 import flint
 
 ORDER, BITS, SMALL = 40, 160, -36  # the last terms are below 1e-36
@@ -26,7 +28,9 @@ def trajectory(epsilon, beta, tau, theta0, v0, ts, slopes=()):
                 scene = (epsilon, beta, tau)
                 series = _series(*scene, theta, v, [m[0] for m in moved], [m[1] for m in moved],
                                  [m[2:] for m in moved])  # fmt: skip
-                h = min(_step(series[0]), _step(series[1]))
+                # No longer than perturbations allow, of rates √ε and β.
+                slow = 1.5 / max(float(epsilon) ** 0.5, float(beta))
+                h = min(_step(series[0]), _step(series[1]), slow)
                 left = target - t
                 last = not flint.arb(h) < left
                 h = left if last else flint.arb(h)
@@ -68,7 +72,7 @@ def _step(coefficients) -> float:
         if size > 0:
             log = float(size.log()) / 2.302585092994046
             sizes.append(10 ** ((SMALL - log) / n))
-    return min(sizes, default=1.0)
+    return min(sizes, default=math.inf)
 
 
 def _sum(coefficients, h):

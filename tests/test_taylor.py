@@ -146,6 +146,38 @@ def test_the_scene_chooses():
     assert method(1.0, 1e-5, t=1e5) == "averaging over turns"
 
 
+def test_derivatives_at_rest():
+    """A pendulum that hangs still says nothing of how perturbations move."""
+    beta, t = 0.2, jnp.array([1.0, 50.0])
+
+    def at(x):
+        return simulate(Pendulum(1.0, beta, x[0]), t, x[1], x[2]).theta
+
+    omega = np.sqrt(1 - beta**2 / 4)
+    decay, phase = np.exp(-beta * np.asarray(t) / 2), omega * np.asarray(t)
+    by_v0 = decay * np.sin(phase) / omega
+    by_theta0 = decay * np.cos(phase) + beta / 2 * by_v0
+    true = np.stack([1 - by_theta0, by_v0, by_theta0], 1)
+    np.testing.assert_allclose(jax.jacfwd(at)(jnp.zeros(3)), true, atol=1e-12)
+    overdamped = jax.jacfwd(lambda tau: simulate(Pendulum(1.0, 1e4, tau), 2e4, 0.0).theta)
+    np.testing.assert_allclose(overdamped(0.0), 1 - np.exp(-2), rtol=1e-7)
+
+
+def test_a_lane_without_an_answer_takes_no_steps():
+    tau = jnp.array([0.1, jnp.nan])
+
+    def lanes(tau):
+        run = simulate(Pendulum(1.0, None, tau), jnp.array([100.0]), 1.0, throw=False)
+        return run.theta, (run.stats["steps"], run.result)
+
+    theta, slope, (steps, result) = jax.jvp(lanes, (tau,), (jnp.ones(2),), has_aux=True)
+    assert jnp.isnan(theta[1]).all()
+    assert jnp.isnan(slope[1]).all()
+    assert jnp.isfinite(slope[0]).all()
+    assert steps[1] == 1
+    assert (result == Result.not_a_number).tolist() == [False, True]
+
+
 def test_at_rest_and_huge():
     """Exactly at the bottom, under a torque of 1e6, at v0 = 1e6, and τ = ε to 1e-12."""
     still = simulate(Pendulum(1.0, 0.1), jnp.array([1.0, 1e3]), 0.0)

@@ -18,8 +18,14 @@ from jaxtyping import Array, Float
 Parameters = list[Float[Array, "..."]]
 
 
-def by_columns(f: Callable[[Parameters], tuple[Any, Any]], p: Parameters) -> tuple[Any, Any]:
-    """`f(p)`, a pytree of arrays and whatever else `f` says; `p` must hold all that is traced."""
+def by_columns(
+    f: Callable[[Parameters], tuple[Any, Any]], p: Parameters, careful: Callable | None = None
+) -> tuple[Any, Any]:
+    """`f(p)`, a pytree of arrays and whatever else `f` says; `p` must hold all that is traced.
+
+    `careful` is the same function, to be differentiated in place of `f`.
+    """
+    exact = f if careful is None else careful
 
     @jax.custom_jvp
     def value(p):
@@ -30,9 +36,9 @@ def by_columns(f: Callable[[Parameters], tuple[Any, Any]], p: Parameters) -> tup
         (p,), (dp,) = primals, tangents
         moving = [i for i, dx in enumerate(dp) if not isinstance(dx, SymbolicZero)]
         if not moving:
-            y, said = by_columns(f, p)
+            y, said = by_columns(f, p, careful)
             return (y, said), jax.tree.map(no_tangent, (y, said))
-        (y, columns), said = by_columns(partial(_with_columns, f, moving), p)
+        (y, columns), said = by_columns(partial(_with_columns, exact, moving), p)
         direction = jnp.concatenate([jnp.ravel(dp[i]) for i in moving])
         dy = jax.tree.map(lambda column: column @ direction, columns)
         return (y, said), (dy, jax.tree.map(no_tangent, said))

@@ -11,7 +11,7 @@ from jaxtyping import Array, Bool, Float, Int
 
 from ._columns import by_columns
 from ._overdamped import is_overdamped, overdamped
-from ._series import Method, Scene, State, order_for, taylor
+from ._series import STABLE, Method, Scene, State, for_tangents, order_for, taylor
 
 Scalar = Float[Array, ""]
 
@@ -41,9 +41,9 @@ def marched(
     `moving_times`: whether `ts`, too, may be differentiated.
     """
 
-    def solve(scene, start, ts, most):
-        most = most.astype(jnp.int32)
-        return march(scene, start, ts, most, rtol=rtol, atol=atol, stiff=stiff)
+    def solve(tangents, scene, start, ts, most):
+        most, options = most.astype(jnp.int32), {"stiff": stiff, "tangents": tangents}
+        return march(scene, start, ts, most, rtol=rtol, atol=atol, **options)
 
     # With the parameters, as all that is traced must be, and so a floating number.
     most = max_steps.astype(ts.dtype)
@@ -54,9 +54,16 @@ def marched(
 def with_derivatives(
     solve: Callable, scene: Scene, start: State, ts, extra, moving_times: bool
 ) -> tuple[State, Any]:
-    """`solve(scene, start, ts, extra)`, states and what else it says, in every mode and order."""
+    """States of `solve(tangents, scene, start, ts, extra)` and what else it says.
+
+    In every mode and order; `tangents`: whether it is being differentiated.
+    """
     leaves, treedef = jax.tree.flatten((scene, start, lax.stop_gradient(ts), extra))
-    states, said = by_columns(lambda p: solve(*jax.tree.unflatten(treedef, p)), leaves)
+    value, careful = (
+        partial(lambda tangents, p: solve(tangents, *jax.tree.unflatten(treedef, p)), tangents)
+        for tangents in (False, True)
+    )
+    states, said = by_columns(value, leaves, careful)
     if moving_times:
         late = ts - lax.stop_gradient(ts)
         states = jax.vmap(partial(_later, scene))(states, late)
@@ -87,19 +94,22 @@ def march(
     rtol: float,
     atol: float,
     stiff: bool,
+    tangents: bool = False,
 ) -> tuple[State, tuple[Bool[Array, " times"], March]]:
     """The states at `ts`, monotone away from 0, which of them were reached, and the end.
 
     `start` holds at 0.  Steps end on saved times.  `stiff`: whether the program has the
     overdamped motion in it; a lane takes it where its own β is large enough, once what
-    relaxes like e^(−βt) is below a rounding.
+    relaxes like e^(−βt) is below a rounding.  `tangents`: whether steps are to be as short as
+    those of perturbations, the motion's own being at rest perhaps.
     """
-    order = order_for(rtol, atol)
-    full = taylor(order, rtol, atol)
-    slow = overdamped(min(order, 8), rtol, atol) if stiff else None
+    full, slow = (
+        kind(order, rtol, atol, for_tangents(order, rtol, atol) if tangents else STABLE)
+        for kind, order in ((taylor, order_for(rtol, atol)), (overdamped, 8))
+    )
 
     def to_next(at: March, t):
-        if slow is None:
+        if not stiff:
             at = until(full, scene, at, t, max_steps)
         else:
             relaxed = _relaxed(scene)

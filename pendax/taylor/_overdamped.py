@@ -17,16 +17,20 @@ import jax
 import jax.numpy as jnp
 from jax import lax
 
-from ._series import Method, Scene, State, method, plain, sine_and_cosine
+from ._series import STABLE, Method, Scene, State, method, plain, sine_and_cosine
 
 # δ below which five sweeps leave less than eps: the error is 42 δ⁵ (Catalan's numbers).
 LARGEST = 1e-3 / 4
 _SWEEPS = 5
 
 
-def overdamped(order: int, rtol: float, atol: float) -> Method:
+def overdamped(order: int, rtol: float, atol: float, longest: float = STABLE) -> Method:
     """Steps on the slow curve: they take θ, and give v whatever it was."""
-    return method(partial(_series, order), order, rtol, atol, plain)
+
+    def quickest(scene):
+        return _strength(scene) / scene.beta
+
+    return method(partial(_series, order), order, rtol, atol, quickest, longest, plain)
 
 
 def is_overdamped(scene: Scene):

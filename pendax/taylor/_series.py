@@ -30,6 +30,10 @@ from ..special._cpu import stage
 Scalar = Float[Array, ""]
 
 
+# Steps of this length leave what decays small.
+STABLE = 2.0
+
+
 class Scene(NamedTuple):
     """The parameters, a term that is `None` being absent."""
 
@@ -55,12 +59,34 @@ def order_for(rtol: float, atol: float) -> int:
     return max(10, min(16, round(-0.37 * math.log(min(rtol, atol)))))
 
 
-def taylor(order: int, rtol: float, atol: float) -> Method:
-    """Steps of given `order`, errors within atol + rtol |y| in θ and in v each."""
-    return method(partial(scaled_series, order), order, rtol, atol)
+def taylor(order: int, rtol: float, atol: float, longest: float = STABLE) -> Method:
+    """Steps of given `order`, errors within atol + rtol |y| in θ and in v each.
+
+    At rest the motion's own series says nothing, and perturbations still move like e^(λt) with
+    |λ| ≤ √ε or β: no step is longer than `longest` over the larger of these.
+    """
+
+    def quickest(scene):
+        rate = jnp.sqrt(scene.epsilon)
+        return rate if scene.beta is None else jnp.maximum(rate, scene.beta)
+
+    return method(partial(scaled_series, order), order, rtol, atol, quickest, longest)
 
 
-def method(series: Callable, order: int, rtol: float, atol: float, cut: Callable = stage) -> Method:
+def for_tangents(order: int, rtol: float, atol: float) -> float:
+    """The longest step after which a perturbation's own series is within the tolerance."""
+    return min(STABLE, (math.factorial(order) * min(rtol, atol)) ** (1 / order))
+
+
+def method(
+    series: Callable,
+    order: int,
+    rtol: float,
+    atol: float,
+    quickest: Callable,
+    longest: float,
+    cut: Callable = stage,
+) -> Method:
     """Of `series(scene, state)`: a rate, and the coefficients of v / rate in rate · t."""
 
     def theta_after(scene, state, h):
@@ -87,7 +113,8 @@ def method(series: Callable, order: int, rtol: float, atol: float, cut: Callable
             )
             return share ** (-1 / n)
 
-        return jnp.minimum(within(order - 1), within(order)) / rate
+        own = jnp.minimum(within(order - 1), within(order)) / rate
+        return jnp.minimum(own, longest / quickest(scene))
 
     def size(scene, state):
         return cut(size_of, *lax.stop_gradient((scene, state)))
