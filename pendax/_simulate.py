@@ -109,7 +109,7 @@ def simulate(
     large number stands for them.
 
     Of a solver: within 50 × tolerance × (1 + max|y|) (1 + κ), κ what perturbations grow by
-    ([`condition`][]) and the tolerance the larger of the two; 1.4 instead of 50 was the most
+    ([`condition`][]) and the tolerance the larger of the two; 4.4 instead of 50 was the most
     in random scenes by Taylor's method.  Of averaging: below
     the error that it states, 1e-9 to some 1e-6 rad to t = 5/β.
 
