@@ -111,7 +111,8 @@ def simulate(
     Of a solver: within 50 × tolerance × (1 + max|y|) (1 + κ), κ what perturbations grow by
     ([`condition`][]) and the tolerance the larger of the two; 4.4 instead of 50 was the most
     in random scenes by Taylor's method.  Of averaging: below
-    the error that it states, 1e-9 to some 1e-6 rad to t = 5/β.
+    the error that it states, 1e-9 to some 1e-6 rad to t = 5/β, wherever that was checked: β down
+    to 1e-7; at 1e-8 for a start that swings, not for one that crosses the separatrix.
 
     Suzuki & Suzuki §2.3, §3.1; with a solver §5, §7, §8.
     """
