@@ -3,6 +3,8 @@
     the scene        Pendulum, Pendulum.from_si, energy, potential, velocity, tension,
                      slack_angle, fixed_points
     its motion       simulate, condition, time_to, frequency, period, amplitude
+    its end          settle, retrapping_torque, mean_velocity, critical_torque,
+                     well_boundaries
     its spectrum     harmonics, power_spectrum
     its expansions   period_series, small_angle, critical_law, fit_critical_law
     its geometry     geometry
@@ -44,6 +46,12 @@ from ._small_angle import period_series as period_series
 from ._small_angle import small_angle as small_angle
 from ._spectrum import power_spectrum as power_spectrum
 from ._time_to import time_to as time_to
+from .fate import Settled as Settled
+from .fate import critical_torque as critical_torque
+from .fate import mean_velocity as mean_velocity
+from .fate import retrapping_torque as retrapping_torque
+from .fate import settle as settle
+from .fate import well_boundaries as well_boundaries
 from .fit import Cycles as Cycles
 from .fit import Fit as Fit
 from .fit import cycles as cycles

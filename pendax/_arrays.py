@@ -92,6 +92,16 @@ def whole(name: str, x: object, least: int) -> int:
     return int(x)
 
 
+def tolerance(name: str, x: object) -> float | None:
+    """`x` as a positive Python number, or None, else ValueError."""
+    if x is None:
+        return None
+    values = concrete(x)
+    if values is None or values.ndim or not (0 < values < np.inf):
+        raise ValueError(f"Argument `{name}` must be one positive number, but got {x}.")
+    return float(values)
+
+
 def difference_of_products(
     a: Float[Array, "..."], b: Float[Array, "..."], c: Float[Array, "..."], d: Float[Array, "..."]
 ) -> Float[Array, "..."]:

@@ -14,6 +14,7 @@ class Result(eqx.Enumeration):
     not_converged = "The iteration did not converge."
     too_many_steps = "The solver took `max_steps` steps and was not at the last time yet."
     too_stiff = "The solver took `max_steps` steps, held small by the damping alone."
+    unsettled = "The motion did not come to an end: no damping, a start on a saddle, `max_steps`."
     solver_failed = "The solver gave up: its step became too small, or a number infinite."
 
 

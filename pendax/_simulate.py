@@ -9,7 +9,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import aligned, common, concrete, require, whole, widened
+from ._arrays import aligned, common, concrete, require, tolerance, whole, widened
 from ._method import choose
 from ._motion import motion
 from ._pendulum import Pendulum, require_free
@@ -157,7 +157,7 @@ def _lanes(ts: Float[Array, "..."], *lanes: ArrayLike) -> list[Float[Array, "...
 
 def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Trajectory:
     for name in ("rtol", "atol"):
-        options[name] = _tolerance(name, options[name])
+        options[name] = tolerance(name, options[name])
     require("dt0", options["dt0"], "a step other than zero", lambda x: x != 0)
     if options["max_steps"] is not None:
         options["max_steps"] = whole("max_steps", options["max_steps"], 1)
@@ -230,15 +230,6 @@ def _solved(pendulum, times, lanes, method):
         return method(scene, times, lane["v0"], lane["theta0"], lane["t0"])
 
     return jax.vmap(one)(lanes)
-
-
-def _tolerance(name: str, x) -> float | None:
-    if x is None:
-        return None
-    values = concrete(x)
-    if values is None or values.ndim or not (0 < values < np.inf):
-        raise ValueError(f"Argument `{name}` must be one positive number, but got {x}.")
-    return float(values)
 
 
 def require_monotone(ts, t0) -> None:

@@ -1,6 +1,7 @@
 """Scenes without a clock, τ constant or absent, by Taylor series of the motion itself."""
 
 from ._averaged import averaged as averaged
+from ._columns import no_tangent as no_tangent
 from ._march import March as March
 from ._march import budget as budget
 from ._march import marched as marched
@@ -8,3 +9,6 @@ from ._march import with_derivatives as with_derivatives
 from ._overdamped import is_overdamped as is_overdamped
 from ._series import Scene as Scene
 from ._series import State as State
+from ._series import order_for as order_for
+from ._series import polynomial as polynomial
+from ._series import taylor as taylor

@@ -1,0 +1,142 @@
+"""Where a trajectory ends: in which well, or running for ever."""
+
+from functools import partial
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, ArrayLike, Float, Int
+
+from .._arrays import common, tolerance, whole
+from .._pendulum import Pendulum
+from .._results import Result
+from ..taylor import Scene, State
+from ._follow import CAPTURED, GOING, RUNNING, follow, is_captured
+from ._retrapping import retrapping
+from ._saddle import saddle, well_of
+from ._scene import require_damped
+
+Scalar = Float[Array, ""]
+
+_MOST = 2**22
+_BLOCK = 2048
+
+
+class Settled(eqx.Module):
+    """The end of a motion, lane by lane.
+
+    `running`: 0 for captured, +1 or −1 for running that way for ever; `well`: n, where θ goes to
+    2πn + arcsin(τ/ε), and 0 without a meaning where it runs; `time`, s: when that was certain;
+    `result`.
+    """
+
+    running: Int[Array, "*lanes"]
+    well: Int[Array, "*lanes"]
+    time: Float[Array, "*lanes"]
+    result: Result
+
+
+def settle(
+    pendulum: Pendulum,
+    v0: ArrayLike,
+    theta0: ArrayLike = 0.0,
+    *,
+    rtol: float | None = None,
+    atol: float | None = None,
+    max_steps: int | None = None,
+    throw: bool = True,
+) -> Settled:
+    """The end of the motion from (θ0, v0): captured in a well, or running.
+
+    It is followed by Taylor's method no longer than until its fate is sealed: its energy is
+    below the saddle that it would have to pass, it creeps where nothing can lift it over that
+    saddle, or it has passed a saddle downhill under a torque above τ_r
+    ([`retrapping_torque`][]), from where all that passes runs for ever.
+
+    **Arguments:**
+
+    - `pendulum`: with damping and a constant torque (or none).
+    - `v0`, `theta0`: angular velocity, rad/s, and angle, rad.  Shapes broadcast, with the
+      leaves of the pendulum.
+    - `rtol`, `atol`: tolerances of a step, by default 1e-12 (in float32 6e-7); `atol` as `rtol`.
+    - `max_steps`: by default many times what it takes, 4 million at most.
+    - `throw`: whether a lane without an end raises, or says *unsettled* in `result`.
+
+    **Returns:** a [`Settled`][].  At |τ| > ε nothing is captured, whatever the start.  Wells
+    are numbered as angles are: a motion towards negative angles ends in negative wells.
+
+    **Raises:** `ValueError` for β = `None` and for a τ that is a function of time;
+    `RuntimeError` for lanes without an end: β = 0 (a traced one), a start on a saddle,
+    `max_steps` reached.  NaN and parameters outside their domain say so in their `result`.
+
+    A start is right whose boundary is farther away than the error of the steps, 1e-10 or so;
+    the boundaries themselves are [`critical_torque`][] and [`well_boundaries`][].
+    Suzuki & Suzuki §7.2, §8.2.
+    """
+    require_damped(pendulum, "its end")
+    rtol, atol = tolerance("rtol", rtol), tolerance("atol", atol)
+    most = None if max_steps is None else whole("max_steps", max_steps, 1)
+    tau = 0.0 if pendulum.tau is None else pendulum.tau
+    lanes = common(epsilon=pendulum.epsilon, beta=pendulum.beta, tau=tau, v0=v0, theta0=theta0)
+    dtype = lanes[0].dtype
+    if dtype in (jnp.float16, jnp.bfloat16):
+        raise ValueError(f"Arguments must be float32 or float64 to be followed, but got {dtype}.")
+    usual = max(1e-12, float(jnp.finfo(dtype).eps) ** 0.9)
+    least = min(x for x in (rtol, atol, usual) if x is not None)
+    found = _settle(least, most, *lanes)
+    if throw:
+        unsettled = found.result == Result.unsettled
+        message = f"{Result[Result.unsettled]} `throw=False` says in which lane."
+        found = eqx.tree_at(lambda x: x.time, found, eqx.error_if(found.time, unsettled, message))
+    return found
+
+
+@partial(jax.jit, static_argnums=(0, 1))
+def _settle(rtol: float, most: int | None, *lanes: Float[Array, "..."]) -> Settled:
+    def one(lane):
+        return _one(rtol, most, *lane)
+
+    flat = tuple(x.ravel() for x in lanes)
+    # In blocks: the slowest lane holds up its neighbours alone.
+    found = jax.vmap(one)(flat) if flat[0].size <= _BLOCK else lax.map(one, flat, batch_size=_BLOCK)
+    return jax.tree.map(lambda x: x.reshape(lanes[0].shape), found)
+
+
+def _one(rtol: float, most: int | None, epsilon, beta, tau, v0, theta0) -> Settled:
+    good = (epsilon > 0) & (epsilon < jnp.inf) & (beta >= 0) & (beta < jnp.inf)
+    good = good & jnp.isfinite(tau) & jnp.isfinite(v0) & jnp.isfinite(theta0)
+    root = jnp.sqrt(jnp.where(good, epsilon, 1))
+    mirror = jnp.where(tau < 0, -1, 1).astype(root.dtype)
+    # A lane without an answer hangs at rest.
+    rest = jnp.array([1, 0, 0, 0], root.dtype)
+    given = [beta / root, mirror * tau / (root * root), mirror * v0 / root, mirror * theta0]
+    beta, tau, v0, theta0 = lax.stop_gradient(jnp.where(good, jnp.stack(given), rest))
+    enough = 2000 + 20 * (jnp.abs(v0) + 4) / jnp.maximum(beta, 1e-12)
+    limit = jnp.minimum(enough, _MOST).astype(jnp.int32) if most is None else most
+    end, state, t = fate(beta, tau, State(theta0, v0), limit, rtol)
+    well = jnp.where(end == CAPTURED, mirror * well_of(saddle(tau), state.theta), 0)
+    result = Result.where(end == GOING, Result.unsettled, Result.successful)
+    return Settled(
+        jnp.where(end == RUNNING, mirror, 0).astype(int),
+        well.astype(int),
+        jnp.where(good, t / root, jnp.nan),
+        Result.where(good, result, Result.not_a_number),
+    )
+
+
+def fate(beta: Scalar, tau: Scalar, start: State, most, rtol: float):
+    """Of ε = 1 and τ ≥ 0: how it ends, in which state that was certain, and when."""
+    scene, at = Scene(1 + 0 * beta, beta, tau), saddle(tau)
+    running = tau > retrapping(beta)
+
+    def end_of(before: State, after: State):
+        passed = well_of(at, after.theta) > well_of(at, before.theta)
+        captured = jnp.where(is_captured(scene, at, after), CAPTURED, GOING)
+        return jnp.where(passed & running, RUNNING, captured)
+
+    first = jnp.where(is_captured(scene, at, start), CAPTURED, GOING)
+    first = jnp.where(tau > 1, RUNNING, first)
+    most = jnp.where(beta > 0, most, 0)
+    found = follow(scene, start, end_of, first, most, rtol)
+    return found.end, found.state, found.t
