@@ -115,7 +115,7 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
 
     By what can be seen of it: under a transformation programs are general.
     """
-    span = None if _hidden(ts, t0) else np.subtract(*_together(_widest(ts), t0))
+    span = None if _hidden(ts, t0) else _span(ts, t0)
     named = ("stepsize_controller", "dt0", "adjoint")
     if not callable(pendulum.tau) and solver is None and all(options[x] is None for x in named):
         # Who speaks of steps wants them.
@@ -151,10 +151,13 @@ def _together(*terms):
     return np.broadcast_arrays(*(np.asarray(x, float) for x in terms))
 
 
-def _widest(ts):
-    """The time that is farthest away; of none at all, some."""
-    ts = np.atleast_1d(np.asarray(ts, float))
-    return ts[np.argmax(np.abs(ts))] if ts.size else 0.0
+def _span(ts, t0):
+    """From each t0 to the time that is farthest away; of none at all, 0."""
+    ts, t0 = np.atleast_1d(np.asarray(ts, float)), np.asarray(t0, float)
+    if ts.size == 0:
+        return np.zeros_like(t0)
+    low, high = ts.min() - t0, ts.max() - t0
+    return np.where(np.abs(low) > np.abs(high), low, high)
 
 
 def _barely_damped(pendulum: Pendulum, span, dtype) -> bool:
@@ -163,7 +166,7 @@ def _barely_damped(pendulum: Pendulum, span, dtype) -> bool:
     if pendulum.tau is not None or beta is None or dtype != jnp.float64 or _hidden(epsilon, beta):
         return False
     root, beta = _together(np.sqrt(np.asarray(epsilon)), beta)
-    weak = np.all((beta > 0) & (beta <= 3e-4 * root))
+    weak = np.all((beta > 0) & (beta <= 3e-4 * root) | np.isnan(beta))
     return bool(weak and np.all(span > 0) and np.max(span) * np.min(root) > 1e4)
 
 

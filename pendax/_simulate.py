@@ -22,7 +22,7 @@ class Trajectory(eqx.Module):
     `ts` has the times, of any shape; `theta` and `v` have the shape of the lanes
     followed by that of `ts`; `result` has the shape of the lanes.  θ is unwrapped.
     `method` names what answered; `stats` has its `steps`, `accepted` and `rejected`, lane by
-    lane, or, of averaging, a bound for the `error` of θ and v/√ε at all times, in rad; the
+    lane, or, of averaging, an estimate from above of the `error` of θ and v/√ε at all times, in rad; the
     closed form has none.
     """
 
@@ -55,7 +55,7 @@ def simulate(
     - Neither damping nor torque: the closed form.
     - τ constant: Taylor's method for this equation; where β² > 4000 (ε + |τ|), on the slow curve
       v(θ) once v has relaxed to it, so that the steps don't grow with β.
-    - No torque, β ≤ 3e-4 √ε in all lanes and more than 10⁴/√ε to follow, in float64 and with
+    - No torque, 0 < β ≤ 3e-4 √ε in all lanes and more than 10⁴/√ε to follow, in float64 and with
       neither `rtol`, `atol` nor `max_steps`: averaging over turns, some 0.2 s however long.
     - τ a function of t: diffrax's `Dopri8`, or its `Kvaerno5` where β is as large as above.
 
@@ -110,9 +110,9 @@ def simulate(
 
     Of a solver: within 50 × tolerance × (1 + max|y|) (1 + κ), κ what perturbations grow by
     ([`condition`][]) and the tolerance the larger of the two; 4.4 instead of 50 was the most
-    in random scenes by Taylor's method.  Of averaging: below
-    the error that it states, 1e-9 to some 1e-6 rad to t = 5/β, wherever that was checked: β down
-    to 1e-7; at 1e-8 for a start that swings, not for one that crosses the separatrix.
+    in random scenes by Taylor's method.  Of averaging: below the error that it states, wherever
+    that was checked, for β down to 1e-8: at t = 5/β some 1e-9 to 1e-7 rad where 1e-8 to 5e-6 are
+    stated, and both large for a start at the top, which magnifies a rounding of θ0.
 
     Suzuki & Suzuki §2.3, §3.1; with a solver §5, §7, §8.
     """
@@ -177,9 +177,11 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     require_monotone(ts, t0)
     if options["dt0"] is not None:
         options["dt0"] = jnp.asarray(options["dt0"], dtype)
-    method = choose(pendulum, *given, dtype, solver, options)
     shape = lanes["v0"].shape
-    if ts.size == 0:
+    if 0 in shape:  # no lane asks for anything
+        pendulum, given = Pendulum(), (0.0, 0.0, 0.0)
+    method = choose(pendulum, *given, dtype, solver, options)
+    if 0 in shape + ts.shape:
         empty, none = jnp.zeros(shape + ts.shape, dtype), jnp.zeros(shape, bool)
         return Trajectory(
             ts, empty, empty, where(none, Result.successful, Result.successful), {}, method.name
@@ -192,6 +194,9 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
         bad = bad | (lanes["beta"] < 0)
     # At rest, without forces: a single step.
     rest = dict.fromkeys(lanes, 0.0) | {"epsilon": 1e-30}
+    # Their derivatives, 0 · NaN in every argument and every mode.
+    wrong = sum(jnp.where(bad, x, 0) for x in lanes.values())
+    wrong = (wrong * jnp.where(bad, jnp.nan, jnp.zeros_like(wrong))).reshape(-1, 1)
     lanes = {name: jnp.where(bad, rest[name], x) for name, x in lanes.items()}
 
     times = jnp.where(jnp.all(jnp.isfinite(ts)), ts, 0).astype(dtype)
@@ -199,8 +204,8 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     theta, v, result, stats = _solved(pendulum, jnp.atleast_1d(times), flat, method)
     bad = bad.reshape(-1)
     # A factor, that derivatives are NaN as well.
-    lost = jnp.where(bad[:, None] | jnp.isinf(theta), jnp.nan, jnp.ones_like(theta))
-    theta, v = theta * lost, v * lost
+    lost = jnp.where(jnp.isinf(theta), jnp.nan, jnp.ones_like(theta))
+    theta, v = theta * lost + wrong, v * lost + wrong
     result = jax.vmap(Result.where, in_axes=(0, None, 0))(bad, Result.not_a_number, result)
     if throw:
         for how, cure in _CURES:
@@ -234,8 +239,10 @@ def _solved(pendulum, times, lanes, method):
 
 def require_monotone(ts, t0) -> None:
     seen, start = concrete(ts), concrete(t0)
-    if seen is None or start is None or seen.size == 0:
+    if seen is None or start is None or 0 in (seen.size, start.size):
         return
+    if np.isnan(seen).any() or np.isnan(start).any():
+        return  # no order is wrong, and no answer a number
     steps = np.diff(np.atleast_1d(seen))
     first, last = np.min(np.atleast_1d(seen)), np.max(np.atleast_1d(seen))
     onwards = np.all(steps >= 0) and np.all(first >= start)

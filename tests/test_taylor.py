@@ -134,8 +134,13 @@ def test_what_fails_says_so():
 
 
 def test_the_scene_chooses():
-    def method(*terms, t=10.0, **options):
-        return simulate(Pendulum(*terms), t, 1.0, throw=False, **options).method
+    def method(*terms, t=10.0, t0=0.0, **options):
+        scene = Pendulum(*terms)
+
+        def call():  # traced, not compiled
+            return simulate(scene, t, 1.0, t0=t0, throw=False, **options)
+
+        return jax.eval_shape(call).method
 
     assert method(1.0) == "closed form"
     assert method(1.0, 0.1, 0.2) == method(1.0, None, 0.2) == method(1.0, 1e5) == "Taylor series"
@@ -143,7 +148,10 @@ def test_the_scene_chooses():
     assert method(1.0, 1e5, jnp.sin) == "Kvaerno5"
     assert method(1.0, 0.1, rtol=1e-3, dt0=0.1) == "Dopri8"
     assert method(1.0, 0.1, solver=dfx.Tsit5(), rtol=1e-3) == "Tsit5"
-    assert method(1.0, 1e-5, t=1e5) == "averaging over turns"
+    averaging = "averaging over turns"
+    assert method(1.0, 1e-5, t=1e5) == method(1.0, 1e-5, t=0.0, t0=-1e5) == averaging
+    assert method(1.0, np.array([1e-5, np.nan]), t=1e5) == averaging
+    assert method(1.0, 1e-5, t=0.0, t0=1e5) == method(1.0, 1e-3, t=1e5) == "Taylor series"
 
 
 def test_derivatives_at_rest():
@@ -170,12 +178,20 @@ def test_a_lane_without_an_answer_takes_no_steps():
         run = simulate(Pendulum(1.0, None, tau), jnp.array([100.0]), 1.0, throw=False)
         return run.theta, (run.stats["steps"], run.result)
 
+    back = jax.grad(lambda tau: lanes(tau)[0].sum())(tau)
+    assert jnp.isnan(back).tolist() == [False, True]
     theta, slope, (steps, result) = jax.jvp(lanes, (tau,), (jnp.ones(2),), has_aux=True)
     assert jnp.isnan(theta[1]).all()
     assert jnp.isnan(slope[1]).all()
     assert jnp.isfinite(slope[0]).all()
     assert steps[1] == 1
     assert (result == Result.not_a_number).tolist() == [False, True]
+
+
+def test_no_lanes():
+    ts, none = jnp.array([1.0, 2e5]), jnp.zeros(0)
+    for scene in (Pendulum(1.0, none), Pendulum(1.0, 1e-5), Pendulum(1.0, 0.1, jnp.sin)):
+        assert simulate(scene, ts, none).theta.shape == (0, 2)
 
 
 def test_at_rest_and_huge():

@@ -40,7 +40,7 @@ def is_captured(scene: Scene, at: Saddle, state: State) -> Bool[Array, ""]:
     square = scene.beta * scene.beta
     near = jnp.minimum(0.5 * square / jnp.maximum(at.tau, 1e-9), jnp.pi)
     reach = jnp.where(square > 3.03, 2 * jnp.pi, near)
-    slow = (state.v >= 0) & (state.v <= 0.5 * scene.beta * y) & (y <= reach)
+    slow = (state.v >= 0) & (state.v < 0.5 * scene.beta * y) & (y <= reach)
     return (0.5 * state.v * state.v < depth) | slow
 
 

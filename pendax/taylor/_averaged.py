@@ -49,7 +49,7 @@ class Orders(NamedTuple):
     """What is changed to see what it matters."""
 
     last: Scalar  # a factor of the last terms that are kept
-    energy: Scalar  # a relative change of the first energy
+    rounded: Scalar  # a relative change of the first energy, and of θ0 with its turns
 
 
 def averaged(
@@ -57,8 +57,8 @@ def averaged(
 ) -> tuple[State, Float[Array, " times"]]:
     """The states at `ts` > 0, in any order, and how far off they may be: rad, and rad/s over √ε.
 
-    The error is the change without the last terms, that by some roundings of the energy, both
-    twice, and the rounding of a phase √ε t.
+    The error is the change without the last terms, that by some roundings of the start, both
+    twice, and the rounding of a phase √ε t, and of a panel's part of it in the tables.
     """
     eps = jnp.finfo(ts.dtype).eps
     orders = Orders(jnp.array([1, 0, 1], ts.dtype), jnp.array([0, 0, 8], ts.dtype) * eps)
@@ -67,28 +67,38 @@ def averaged(
     root = jnp.sqrt(scene.epsilon)
     moved = [jnp.hypot(x.theta - best.theta, (x.v - best.v) / root) for x in others]
     swing = jnp.minimum(jnp.hypot(jnp.sin(0.5 * best.theta), 0.5 * best.v / root), 1)
-    rounded = 8 * eps * (root * ts * (swing + jnp.abs(best.v) / root) + jnp.abs(best.theta))
-    error = 2 * (moved[0] + moved[1]) + rounded + jnp.exp(-0.5 * _LOWEST)
+    phase = root * (ts + 0.25 / scene.beta) * (swing + jnp.abs(best.v) / root)
+    rounded = 32 * eps * phase + 256 * eps * jnp.abs(best.theta)
+    error = 2 * (moved[0] + moved[1]) + rounded + 2 * jnp.exp(-0.5 * _LOWEST)
     return best, lax.stop_gradient(error)
 
 
 def _at(scene: Scene, start: State, ts, orders: Orders) -> State:
     method = taylor(10, 1e-14, 1e-14)
 
+    theta = start.theta + orders.rounded * (jnp.abs(start.theta) + jnp.pi)
+    start = State(theta, start.v)
+    first = _first(scene, start)
+    first = first._replace(energy=first.energy * (1 + orders.rounded))
+
     def rest(at: Bottom, t):
         v = at.direction * jnp.sqrt(2 * at.energy)
-        begin = March(at.t, State(jnp.zeros_like(v), v))
-        end = until(method, scene, begin, jnp.where(at.energy > 0, t, at.t), 10_000)
+        bottom = March(at.t, State(jnp.zeros_like(v), v))
+        # Before the first passage from the start: backwards from there the top magnifies.
+        early = t < first.t
+        begin = March(jnp.zeros_like(t), start)
+        begin = jax.tree.map(lambda x, y: jnp.where(early, x, y), begin, bottom)
+        still = ~early & (at.energy <= 0)
+        end = until(method, scene, begin, jnp.where(still, at.t, t), 10_000)
         # The turns come last: a large angle has few digits for what is in a turn.
-        return State(2 * jnp.pi * at.turns + end.state.theta, end.state.v)
+        turns = jnp.where(early, 0, at.turns)
+        return State(2 * jnp.pi * turns + end.state.theta, end.state.v)
 
-    return jax.vmap(rest)(sections(scene, start, ts, orders), ts)
+    return jax.vmap(rest)(sections(scene, first, ts, orders), ts)
 
 
-def sections(scene: Scene, start: State, ts, orders: Orders) -> Bottom:
+def sections(scene: Scene, first: Bottom, ts, orders: Orders) -> Bottom:
     """For every time the last passage of the bottom, or nearly the last, before it."""
-    first = _first(scene, start)
-    first = first._replace(energy=first.energy * (1 + orders.energy))
     # Turning over, down to the neighbourhood of the separatrix.
     near = _near(scene)
     top = 2 * scene.epsilon
