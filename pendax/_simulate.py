@@ -22,8 +22,8 @@ class Trajectory(eqx.Module):
     `ts` has the times, of any shape; `theta` and `v` have the shape of the lanes
     followed by that of `ts`; `result` has the shape of the lanes.  θ is unwrapped.
     `method` names what answered; `stats` has its `steps`, `accepted` and `rejected`, lane by
-    lane, or, of averaging, an estimate from above of the `error` of θ and v/√ε at all times, in rad; the
-    closed form has none.
+    lane, or, of averaging, the `error` that θ and v/√ε may have at all times, rad, estimated
+    from above; the closed form has none.
     """
 
     ts: Float[Array, "*times"]

@@ -59,7 +59,7 @@ def _crossing(series, angle, h):
 
 
 def _onwards(beta, tau, theta, v, angle):
-    """The time to `angle`, passed with v > 0, and the velocity there."""
+    """The time to `angle`, passed with v > 0, and the velocity there; or None if it turns back."""
     t = arb(0)
     while True:
         series = steps._series(arb(1), beta, tau, theta, v, [], [], [])
@@ -69,6 +69,8 @@ def _onwards(beta, tau, theta, v, angle):
             passed, v = _crossing(series[:2], angle, h)
             return t + passed, v
         theta, v, t = after, steps._sum(series[1], h), t + h
+        if v < 0:
+            return None
 
 
 @in_arb
@@ -76,16 +78,21 @@ def mean_velocity(beta, tau):
     """2π/T of the turn from the bottom that comes back with its own v²: by Newton's method, the
     slope of that map being exp(−βT), by which areas shrink."""
     turn, square = 2 * arb.pi(), ((tau / beta + 3) ** 2).mid()
-    for i in range(200):
-        t, after = _onwards(beta, tau, arb(0), square.sqrt(), turn)
+    round_at = square
+    for i in range(300):
+        gone = _onwards(beta, tau, arb(0), square.sqrt(), turn)
+        if gone is None:
+            square = ((square + round_at) / 2).mid()
+            continue
+        round_at, (t, after) = square, gone
         after = after * after
         if abs(after - square) < arb("1e-31") * square:
-            break
-        # Turn by turn first, or halfway to the separatrix: what is below that never comes round.
+            return turn / t
+        # Turn by turn first: it comes down to the orbit from above, and doesn't overshoot.
         rate = 0 if i < 10 and beta > 0.05 else (-beta * t).exp()
         new = square + (after - square) / (1 - rate)
-        square = (new if beta > 0.05 or new > 4 else (square + 4) / 2).mid()
-    return turn / t
+        square = (new if new > 0 else square / 2).mid()
+    raise RuntimeError("the turn was not found")
 
 
 def mean_velocity_overdamped(beta, tau):

@@ -46,9 +46,7 @@ def test_winding(shared):
     assert settle(Pendulum(1.0, 0.04), -2.3).well == -2
 
 
-@pytest.mark.parametrize(
-    ("seed", "count"), [(3, 40), pytest.param(4, 400, marks=pytest.mark.full)]
-)
+@pytest.mark.parametrize(("seed", "count"), [(3, 40), pytest.param(4, 400, marks=pytest.mark.full)])
 def test_random_starts(seed, count, dtype):
     """Every decade of β from 0.02 to 20, both signs of all."""
     rng = np.random.default_rng(seed)

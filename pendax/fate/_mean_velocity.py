@@ -4,15 +4,17 @@
 
 It is solved for in the angle, where it has the same smooth shape at every damping: in time an
 overdamped orbit is stiff, and one near a saddle lasts for ever.  Radau's collocation on
-panels that are graded towards the angle where w is smallest; Newton's method, its linear
-equations eliminated panel by panel.  What closes them is, of two conditions that say the
-same, the one that has digits: w(2π) = w(0) where a turn forgets how it began, ∫ w dθ = 2π τ/β
-where it does not.
+panels that follow it into its corners, a saddle's neighbourhood say; Newton's method, its
+linear equations eliminated panel by panel.  What closes them is, of two conditions that say
+the same, the one that has digits: w(2π) = w(0) where a turn forgets how it began,
+∫ w dθ = 2π τ/β where it does not.
 
-Rejected: shooting in time, for the above; Fourier series, which need 1/w of terms.
+Rejected: shooting in time, for the above; Fourier series, which need 1/w of terms; panels
+fixed beforehand: beside a saddle w is smallest by (τ − τ_r) to a power between ½ and 1, and
+not at the saddle where two fixed points are about to merge.
 """
 
-from functools import cache, partial
+from functools import partial
 from typing import NamedTuple
 
 import jax
@@ -20,32 +22,31 @@ import jax.numpy as jnp
 import numpy as np
 from jax import lax
 from jaxtyping import Array, Float
-from numpy.polynomial import legendre
 
 from .._arrays import common, widened
 from .._pendulum import Pendulum
 from ._implicit import implicit
+from ._panels import (
+    NODES,
+    Nodes,
+    Panels,
+    angles,
+    by_s,
+    evaluated,
+    graded,
+    radau,
+    refined,
+    slopes,
+    weights,
+)
 from ._retrapping import retrapping
 from ._scene import require_damped
 
 FloatArray = Float[Array, "..."]
 Scalar = Float[Array, ""]
-Nodes = Float[Array, "panels nodes"]
 
-_PANELS, _NODES = 32, 10
-_MOST = 100  # of Newton's steps: 4 to 12 are usual, 40 where τ and β touch τ_r and β*
-
-
-class Grid(NamedTuple):
-    """Where w is known: at angles x(s) from its smallest; fixed when w is differentiated."""
-
-    tau: Scalar  # that it was made for
-    force: Nodes  # τ − sin θ
-    separatrix: Nodes  # 2 |sin(x/2)|, w of the free pendulum's
-    finest: Scalar  # the smallest scale of x
-    slope: Nodes  # dx/ds
-    width: Scalar  # of a panel in s
-    weight: Nodes  # dx of a node
+_MOST = 150  # of Newton's steps: 6 to 12 are usual, 70 within 1e-9 of τ_r
+_RENEWALS = 3  # of the panels at the last torque
 
 
 def mean_velocity(pendulum: Pendulum) -> FloatArray:
@@ -91,78 +92,116 @@ def of_unit(beta: Scalar, tau: Scalar) -> Scalar:
     return jnp.where((beta == 0) & (size > 0), jnp.inf * jnp.sign(tau), v)
 
 
+class Force(NamedTuple):
+    """τ − sin θ at one torque, over the angle x from the saddle, or from its least for τ ≥ 1."""
+
+    tau: Scalar
+    kappa: Scalar  # √(1 − τ²), or 0
+
+    def __call__(self, x: Nodes) -> Nodes:
+        """Without the difference of the two."""
+        bowl = 2 * jnp.sin(0.5 * x) ** 2
+        below = self.kappa * jnp.sin(x) + self.tau * bowl
+        return jnp.where(self.tau < 1, below, self.tau - 1 + bowl)
+
+
 def _running(beta: Scalar, tau: Scalar) -> Scalar:
-    grid = _grid(*lax.stop_gradient((beta, tau)))
+    fixed = lax.stop_gradient(tau)
+    force = Force(fixed, jnp.sqrt(jnp.maximum((1 - fixed) * (1 + fixed), 0)))
 
     def find(p):
         return _solved(*p)
 
-    def change(w, p, dp):
-        grid, beta, tau = p
-        _, moved = jax.jvp(partial(_residuals, grid, w), (beta, tau), dp[1:])
-        return _eliminated(grid, w, beta, moved)
+    def change(found, p, dp):
+        (panels, w), (force, beta, tau) = found, p
+        _, moved = jax.jvp(partial(_residuals, panels, w, force), (beta, tau), tuple(dp[1:]))
+        still = jax.tree.map(jnp.zeros_like, panels)
+        return still, _eliminated(panels, w, beta, moved)
 
-    w = implicit(find, change, (grid, beta, tau))
-    return 2 * jnp.pi / jnp.sum(grid.weight / w)
-
-
-def _grid(beta: Scalar, tau: Scalar) -> Grid:
-    """Angles x = a sinh s around the saddle, or where τ ≥ 1 around the least force."""
-    below = tau < 1
-    gap = tau - retrapping(beta)
-    # w is smallest, √gap or so, where it has least to fall from.
-    a = jnp.clip(jnp.sqrt(gap / jnp.minimum(beta, 1)), 10 * jnp.finfo(tau.dtype).eps ** 0.5, 1)
-    last = jnp.arcsinh(jnp.pi / a)
-    width = 2 * last / _PANELS
-    nodes, _, weights = (jnp.asarray(x, tau.dtype) for x in _radau())
-    s = width * (jnp.arange(_PANELS, dtype=tau.dtype)[:, None] + nodes[None]) - last
-    x, slope = a * jnp.sinh(s), a * jnp.cosh(s)
-    kappa = jnp.sqrt(jnp.where(below, (1 - tau) * (1 + tau), 0))
-    # τ − sin θ, without the difference of the two.
-    bowl = 2 * jnp.sin(0.5 * x) ** 2
-    force = jnp.where(below, kappa * jnp.sin(x) + tau * bowl, tau - 1 + bowl)
-    weight = width * weights[None] * slope
-    return Grid(tau, force, jnp.sqrt(2 * bowl), a, slope, width, weight)
+    panels, w = implicit(find, change, (force, beta, tau))
+    return 2 * jnp.pi / jnp.sum(weights(panels) / w)
 
 
-def _solved(grid: Grid, beta: Scalar, tau: Scalar) -> Nodes:
-    """Newton's method at torques that come down to `tau` from where it converges from a guess.
+class Walk(NamedTuple):
+    """Newton's method at torques that come down to the one that is asked for."""
 
-    Near τ_r the orbit shrinks towards the saddle with τ − τ_r, and its digits end before those
-    of τ: the iteration ends as well where it no longer improves.
+    panels: Panels
+    w: Nodes
+    gap: Scalar  # what the torque is above τ_r, if that is more than the one asked for
+    changed: Scalar  # relatively, by the last step
+    before: Scalar  # and by the last but one
+    renewed: Scalar  # how often at the last torque
+    steps: Scalar
+
+
+def _solved(force: Force, beta: Scalar, tau: Scalar) -> tuple[Panels, Nodes]:
+    """From a guess that is good far above τ_r; at each torque on panels that follow the orbit.
+
+    Near τ_r the orbit's digits end before those of τ: the iteration ends as well where it
+    no longer improves.
     """
-    edge, enough = retrapping(beta), 0.5 * jnp.finfo(tau.dtype).eps ** 0.5
+    edge, eps = retrapping(beta), jnp.finfo(tau.dtype).eps
 
-    def unfinished(carry):
-        _, _, changed, before, steps = carry
-        settled = (changed < enough) | ((changed < 1e-2) & (changed > 0.25 * before))
-        return ~settled & (steps < _MOST)
+    def unfinished(at: Walk):
+        still = (at.changed < 1e-2) & (at.changed > 0.25 * at.before)
+        done = (at.renewed == _RENEWALS) & (still | (at.changed < 0.5 * eps**0.5))
+        return ~done & (at.steps < _MOST)
 
-    def step(carry):
-        w, gap, before, _, steps = carry
-        now = jnp.maximum(tau, edge + gap)
-        change = _eliminated(grid, w, beta, _residuals(grid, w, beta, now))
-        share = change / w
-        # w stays positive.
-        w = w * jnp.clip(1 + share, 0.1, 5)
-        changed = jnp.max(jnp.abs(share))
-        gap = jnp.where(changed < 0.6, gap / 100, gap)
-        return w, gap, jnp.where(now > tau, jnp.inf, changed), before, steps + 1
+    def step(at: Walk):
+        now = jnp.maximum(tau, edge + at.gap)
+        w, changed = _improved(at.panels, at.w, force, beta, now)
+        near, last = changed < 0.1, now <= tau
+        renew = near & (at.renewed < _RENEWALS)
+        kept, new = (at.panels, w), _followed(at.panels, w)
+        panels, w = jax.tree.map(lambda x, y: jnp.where(renew, x, y), new, kept)
+        return Walk(
+            panels,
+            w,
+            jnp.where(near, at.gap / 4, at.gap),
+            jnp.where(renew, jnp.inf, changed),
+            at.changed,
+            at.renewed + jnp.where(renew & last, 1, 0),
+            at.steps + 1,
+        )
 
     far = 0.3 * jnp.minimum(beta, 1)
-    begin = _guess(grid, beta, jnp.maximum(tau, edge + far))
-    inf = jnp.full_like(tau, jnp.inf)
-    w, _, changed, *_ = lax.while_loop(unfinished, step, (begin, far, inf, inf, 0))
-    return jnp.where(changed < 1e-2, w, jnp.nan)
+    high = jnp.maximum(tau, edge + far)
+    a = jnp.minimum(jnp.sqrt((high - edge) / jnp.minimum(beta, 1)), 1)
+    panels = graded(a, -np.pi, np.pi)
+    guess = _guess(angles(panels), a, force, beta, high)
+    inf, zero = jnp.full_like(tau, jnp.inf), jnp.zeros_like(tau)
+    end = lax.while_loop(unfinished, step, Walk(panels, guess, far, inf, inf, zero, zero))
+    return end.panels, jnp.where(end.changed < 1e-2, end.w, jnp.nan)
 
 
-def _guess(grid: Grid, beta: Scalar, tau: Scalar) -> Nodes:
+def _improved(panels: Panels, w: Nodes, force: Force, beta: Scalar, tau: Scalar):
+    share = _eliminated(panels, w, beta, _residuals(panels, w, force, beta, tau)) / w
+    # w stays positive.
+    return w * jnp.clip(1 + share, 0.1, 5), jnp.max(jnp.abs(share))
+
+
+def _followed(panels: Panels, w: Nodes) -> tuple[Panels, Nodes]:
+    """Panels as short as the scale of w, w/√(w'² + |w w''|), and w on them, roughly."""
+    x, dx = angles(panels), slopes(panels)
+    slope = by_s(w) / dx
+    # Not by the equation of motion, whose terms cancel where β is large.
+    bend = w * by_s(slope) / dx
+    after = refined(panels, 1 + jnp.sqrt(slope * slope + jnp.abs(bend)) / w)
+    new = angles(after)
+    at, known = (jnp.append(*pair) for pair in ((panels.edges[:1], x), (w[-1, -1:], w)))
+    rough = jnp.interp(new.ravel(), at, known).reshape(w.shape)
+    # Energies have to be kept to the last digit, but for a polynomial that is none yet.
+    fine = evaluated(panels, w, new)
+    return after, jnp.where((fine > 0.3 * rough) & (fine < 3 * rough), fine, rough)
+
+
+def _guess(x: Nodes, a: Scalar, force: Force, beta: Scalar, tau: Scalar) -> Nodes:
     """The free pendulum's separatrix lifted or lowered to the mean τ/β, or the overdamped w."""
-    mean, lift = tau / beta, grid.finest
-    lowered = mean * (np.pi / 4 * grid.separatrix + lift / 2)
-    lifted = jnp.hypot(lift, jnp.sqrt(jnp.maximum(mean * mean - 1.62, 0)))
-    weak = jnp.where(mean < 4 / np.pi, lowered, jnp.hypot(grid.separatrix, lifted))
-    strong = jnp.maximum(grid.force + (tau - grid.tau), 0) / beta + 1e-3 * mean
+    mean, separatrix = tau / beta, 2 * jnp.abs(jnp.sin(0.5 * x))
+    lowered = mean * (np.pi / 4 * separatrix + a / 2)
+    lifted = jnp.hypot(separatrix, jnp.hypot(a, jnp.sqrt(jnp.maximum(mean * mean - 1.62, 0))))
+    weak = jnp.where(mean < 4 / np.pi, lowered, lifted)
+    strong = jnp.maximum(force(x) + (tau - force.tau), 0) / beta + 1e-3 * mean
     return jnp.where(beta < 1, weak, strong)
 
 
@@ -171,29 +210,21 @@ class Residuals(NamedTuple):
     mean: Scalar  # of ∫ w dθ = 2π τ/β
 
 
-def _residuals(grid: Grid, w: Nodes, beta: Scalar, tau: Scalar) -> Residuals:
-    # Linear in τ at a given angle, whatever the grid was made for.
-    force = grid.force + (tau - grid.tau)
-    orbit = w * _by_s(grid, w) - grid.slope * (force - beta * w)
-    return Residuals(orbit, jnp.sum(grid.weight * w) - 2 * np.pi * tau / beta)
+def _residuals(panels: Panels, w: Nodes, force: Force, beta: Scalar, tau: Scalar) -> Residuals:
+    # Linear in τ at a given angle.
+    torque = force(angles(panels)) + (tau - force.tau)
+    orbit = w * by_s(w) - slopes(panels) * (torque - beta * w)
+    return Residuals(orbit, jnp.sum(weights(panels) * w) - 2 * np.pi * tau / beta)
 
 
-def _by_s(grid: Grid, w: Nodes) -> Nodes:
-    """dw/ds; w on the left of a panel is w on the right of the one before."""
-    _, slopes, _ = (jnp.asarray(x, w.dtype) for x in _radau())
-    left = jnp.roll(w[:, -1:], 1, axis=0)
-    return (left * slopes[None, :, 0] + w @ slopes[:, 1:].T) / grid.width
-
-
-def _eliminated(grid: Grid, w: Nodes, beta: Scalar, residuals: Residuals) -> Nodes:
+def _eliminated(panels: Panels, w: Nodes, beta: Scalar, residuals: Residuals) -> Nodes:
     """The change of w that cancels the residuals to first order."""
-    _, slopes, _ = (jnp.asarray(x, w.dtype) for x in _radau())
+    _, derivative, _ = radau(w.dtype)
     # Each panel by itself: the change in it is own + per_left · (change on its left).
-    diagonal = _by_s(grid, w) + grid.slope * beta
-    matrix = diagonal[..., None] * jnp.eye(_NODES, dtype=w.dtype)[None]
-    matrix = matrix + w[..., None] * slopes[None, :, 1:] / grid.width
-    of_left = w * slopes[None, :, 0] / grid.width
-    inverse = _inverse(matrix)
+    diagonal = by_s(w) + slopes(panels) * beta
+    matrix = diagonal[..., None] * jnp.eye(NODES, dtype=w.dtype)[None]
+    inverse = _inverse(matrix + w[..., None] * derivative[None, :, 1:])
+    of_left = w * derivative[None, :, 0]
     own, per_left = (-(inverse @ x[..., None])[..., 0] for x in (residuals.orbit, of_left))
 
     # The same from the first panel's left on, a + b · (change there), panel after panel.
@@ -209,8 +240,9 @@ def _eliminated(grid: Grid, w: Nodes, beta: Scalar, residuals: Residuals) -> Nod
     # Forgotten within a turn, or not.
     slow = b > 0.5
     by_turn = a / jnp.where(slow, 1, 1 - b)
-    total = jnp.sum(grid.weight * free)
-    by_mean = -(residuals.mean + jnp.sum(grid.weight * fixed)) / jnp.where(slow, total, 1)
+    weight = weights(panels)
+    total = jnp.sum(weight * free)
+    by_mean = -(residuals.mean + jnp.sum(weight * fixed)) / jnp.where(slow, total, 1)
     return fixed + free * jnp.where(slow, by_mean, by_turn)
 
 
@@ -219,30 +251,10 @@ def _inverse(matrix: Float[Array, "panels n n"]) -> Float[Array, "panels n n"]:
 
     Not LAPACK's: that takes them one by one, and its calls have locked each other out.
     """
-    one = jnp.eye(_NODES, dtype=matrix.dtype)
+    one = jnp.eye(NODES, dtype=matrix.dtype)
     both = jnp.concatenate([matrix, jnp.broadcast_to(one[None], matrix.shape)], -1)
-    for k in range(_NODES):
+    for k in range(NODES):
         row = both[:, k : k + 1] / both[:, k : k + 1, k : k + 1]
         # Of its own row what is left is `row` itself.
         both = both - (both[:, :, k : k + 1] - one[None, :, k : k + 1]) * row
-    return both[..., _NODES:]
-
-
-@cache
-def _radau() -> tuple[np.ndarray, ...]:
-    """Nodes in (0, 1], dw/ds there from w at 0 and at the nodes, and weights of ∫_0^1."""
-    n = _NODES
-    polynomial = legendre.Legendre.basis(n - 1) + legendre.Legendre.basis(n)
-    roots = np.sort(polynomial.roots().real)
-    roots = roots - np.append(0, polynomial(roots[1:]) / polynomial.deriv()(roots[1:]))
-    roots[0] = -1
-    nodes = 0.5 * (1 - roots[::-1])
-    every = np.append(0, nodes)
-    apart = every[:, None] - every[None] + np.eye(n + 1)
-    weight = 1 / np.prod(apart, axis=1)
-    slopes = weight[None] / weight[:, None] / apart
-    np.fill_diagonal(slopes, 0)
-    np.fill_diagonal(slopes, -slopes.sum(1))
-    exact = np.append(1, np.zeros(n - 1))
-    weights = np.linalg.solve(legendre.legvander(2 * nodes - 1, n - 1).T, exact)
-    return nodes, slopes[1:], weights
+    return both[..., NODES:]

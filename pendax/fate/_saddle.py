@@ -4,6 +4,7 @@ import math
 from typing import NamedTuple
 
 import jax.numpy as jnp
+import numpy as np
 from jaxtyping import Array, Float
 
 Scalar = Float[Array, ""]
@@ -26,12 +27,18 @@ def saddle(tau: Scalar) -> Saddle:
 
 def well_of(at: Saddle, theta: Scalar) -> Scalar:
     """Which well an angle is in, a whole number."""
-    return jnp.floor((theta + (jnp.pi + at.alpha)) / (2 * jnp.pi))
+    near = jnp.floor((theta + (jnp.pi + at.alpha)) / (2 * jnp.pi))
+    # Beside a saddle by what `before` says, which has more digits.
+    low = jnp.where(before(at, theta, near - 1) > 0, near - 1, near)
+    return jnp.where(before(at, theta, near) <= 0, near + 1, low)
 
 
 def before(at: Saddle, theta: Scalar, well: Scalar) -> Scalar:
-    """How far before the end of that well."""
-    return 2 * jnp.pi * well + (jnp.pi - at.alpha) - theta
+    """How far before the end of that well; exact beside the top where α = 0 and n = 0 or −1."""
+    odd = 2 * well + 1
+    high = np.asarray(np.pi, theta.dtype)
+    low = (np.pi - float(high)) + 1.2246467991473532e-16
+    return ((odd * high - theta) - at.alpha) + odd * low
 
 
 def stable(at: Saddle, beta: Scalar) -> list[Scalar]:

@@ -137,6 +137,7 @@ def fate(beta: Scalar, tau: Scalar, start: State, most, rtol: float):
 
     first = jnp.where(is_captured(scene, at, start), CAPTURED, GOING)
     first = jnp.where(tau > 1, RUNNING, first)
-    most = jnp.where(beta > 0, most, 0)
+    # Nothing ends without damping.
+    first, most = jnp.where(beta > 0, first, GOING), jnp.where(beta > 0, most, 0)
     found = follow(scene, start, end_of, first, most, rtol)
     return found.end, found.state, found.t
