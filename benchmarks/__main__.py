@@ -32,6 +32,11 @@ def main() -> int:
     damped.add_argument("--scenes", type=int, default=1000, help="random scenes")
     damped.add_argument("--rounds", type=int, default=15, help="timings of each, interleaved")
     damped.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
+    fate = commands.add_parser("fate", help="where motions end, against 30 digits")
+    fate.add_argument("--seed", type=int, default=1, help="draws other starts")
+    fate.add_argument("--pixels", type=int, default=200, help="of each map that are compared")
+    fate.add_argument("--rounds", type=int, default=5, help="timings of each, interleaved")
+    fate.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
     options = vars(parser.parse_args())
 
     import jax

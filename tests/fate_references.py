@@ -18,8 +18,8 @@ def in_arb(function):
 @in_arb
 def fate(beta, tau, theta0, v0):
     """("captured", n) or ("running", ±1): by the energy of the lower neighbouring saddle, or by
-    a turn without loss of speed."""
-    turn, t0 = 2 * arb.pi(), arb(0)
+    passing a saddle where even the slowest that passes comes to pass the next."""
+    turn = 2 * arb.pi()
     if abs(tau) > 1:
         return "running", 1 if tau > 0 else -1
     downhill = -1 if tau < 0 else 1
@@ -28,7 +28,7 @@ def fate(beta, tau, theta0, v0):
     def well(theta):
         return int(((theta + arb.pi() + angle) / turn).floor().unique_fmpz())
 
-    theta, v, speeds = theta0, v0, []
+    theta, v, runs = theta0, v0, None
     while True:
         n = well(theta)
         saddle = turn * n + downhill * arb.pi() - angle
@@ -39,11 +39,13 @@ def fate(beta, tau, theta0, v0):
         h = arb(min(steps._step(series[0]), steps._step(series[1]), 1.5 / max(1, float(beta))))
         after, moving = (steps._sum(x, h) for x in series)
         if well(after) == n + downhill and downhill * v > 0:
-            speeds.append(abs(_crossing(series, saddle, h)[1]))
-            # Falling no more, or by less than all turns to come could add up to.
-            if len(speeds) > 1 and speeds[-2] - speeds[-1] < arb("1e-25"):
+            if runs is None:
+                x, speed = _leaving(beta, abs(tau))
+                start = -arb.pi() - abs(tau).asin()
+                runs = _onwards(beta, abs(tau), start + x, speed, start + turn) is not None
+            if runs:
                 return "running", downhill
-        theta, v, t0 = after, moving, t0 + h
+        theta, v = after, moving
 
 
 def _crossing(series, angle, h):
@@ -137,11 +139,18 @@ def retrapping(beta):
 
 
 def _at_bottom(beta, tau):
-    kappa, x = ((1 - tau) * (1 + tau)).sqrt(), arb("0.05")
+    x, v = _leaving(beta, tau)
+    return _onwards(beta, tau, -arb.pi() - tau.asin() + x, v, arb(0))[1]
+
+
+def _leaving(beta, tau):
+    """A point shortly after a saddle, and the velocity of what comes from that saddle."""
+    kappa = ((1 - tau) * (1 + tau)).sqrt()
     a = [arb(0), (-beta + (beta * beta + 4 * kappa).sqrt()) / 2]
     for k in range(2, TERMS):
         force = (tau if k % 2 == 0 else kappa) * (-1) ** ((k - 1) // 2) / arb.fac_ui(k)
         known = sum((a[i] * a[k + 1 - i] for i in range(2, k)), arb(0))
         a.append((force - known * (k + 1) / 2) / ((k + 1) * a[1] + beta))
-    v = sum((c * x**k for k, c in enumerate(a)), arb(0))
-    return _onwards(beta, tau, -arb.pi() - tau.asin() + x, v.mid(), arb(0))[1]
+    # Well within the series' radius, some a₁/a₂.
+    x = arb(min(0.05, 0.05 * float(abs(a[1] / a[2])))) if tau != 0 else arb("0.05")
+    return x, sum((c * x**k for k, c in enumerate(a)), arb(0)).mid()
