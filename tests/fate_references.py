@@ -71,7 +71,9 @@ def _onwards(beta, tau, theta, v, angle):
             passed, v = _crossing(series[:2], angle, h)
             return t + passed, v
         theta, v, t = after, steps._sum(series[1], h), t + h
-        if v < 0:
+        # Backwards, damping drives, and nothing stays.
+        low = beta > 0 and v * v / 2 - theta.cos() - tau * theta < -angle.cos() - tau * angle
+        if v < 0 or low:
             return None
 
 

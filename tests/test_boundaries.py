@@ -99,6 +99,10 @@ def test_none():
     found = well_boundaries(Pendulum(1.0, 0.16), 1.98, over="tau", count=3)
     assert jnp.isnan(found).tolist() == [False, True, True]
     assert jnp.isnan(well_boundaries(Pendulum(1.0, 0.1), 1.9, over="beta", count=2)).all()
+    over = well_boundaries(
+        Pendulum(1.0, 1.0, 1.5), jnp.array([0.0, 30.0, -30.0]), over="beta", count=2
+    )
+    assert jnp.isnan(over).all()
     lanes = jnp.array([0.16, jnp.nan, -1.0, 0.0])
 
     def both(beta):

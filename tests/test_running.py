@@ -131,8 +131,27 @@ def test_overdamped():
     for beta, tau in ((1e2, 1.2), (1e3, 1.5), (1e4, 1.2), (1e4, 3.0)):
         true = float(references.mean_velocity_overdamped(beta, tau))
         np.testing.assert_allclose(running(beta, tau), true, rtol=1e-12)
-    np.testing.assert_allclose(running(1e9, 2.0), np.sqrt(3) / 1e9, rtol=1e-14)
+    for beta in (1e5, 1e9, 1e16, 1e100):
+        np.testing.assert_allclose(running(beta, 2.0), np.sqrt(3) / beta, rtol=1e-14)
+        slopes = jax.grad(running, (0, 1))(beta, 2.0)
+        true = -np.sqrt(3) / beta / beta, 2 / np.sqrt(3) / beta
+        np.testing.assert_allclose(slopes, true, rtol=1e-12)
     np.testing.assert_allclose(running(1e4, 1 + 1e-9), np.sqrt(2e-9 + 1e-18) / 1e4, rtol=2e-7)
+
+
+def test_fast():
+    """τ/β and what is left of it, on both sides of where the series takes over."""
+    for beta, tau in ((1.0, 5e3), (1.0, 6e3), (0.1, 7.0), (0.1, 9.0), (30.0, 9e4)):
+        true = float(references.mean_velocity(beta, tau))
+        np.testing.assert_allclose(running(beta, tau), true, rtol=1e-14)
+    for beta, tau in ((1e-14, 1.0), (1.0, 1e13), (1.0, 1e160), (1e6, 1e300)):
+        np.testing.assert_allclose(running(beta, tau), tau / beta, rtol=1e-14)
+        slopes = jax.grad(running, (0, 1))(beta, tau)
+        np.testing.assert_allclose(slopes, (-tau / beta / beta, 1 / beta), rtol=1e-9)
+    with jax.enable_x64(False):
+        for beta, tau in ((1.0, 1e5), (1e-5, 1.0), (1e8, 2.0), (1.0, 30.0), (50.0, 2.0)):
+            true = float(references.mean_velocity(beta, tau)) if beta < 1e8 else np.sqrt(3) / beta
+            np.testing.assert_allclose(running(np.float32(beta), tau), true, rtol=2e-6)
 
 
 def test_what_does_not_run():

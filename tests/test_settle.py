@@ -130,6 +130,8 @@ def test_lanes_without_an_end():
     with pytest.raises(RuntimeError, match="did not come to an end"):
         settle(Pendulum(1.0, 0.16, 0.1), 30.0, max_steps=60)
     assert settle(Pendulum(1.0, jnp.zeros((0,))), 1.0).well.shape == (0,)
+    lost = settle(Pendulum(1.0, 0.3, 0.5), 0.0, jnp.array([1e25, -1e25, 1e18]), throw=False)
+    assert (lost.result == Result.not_a_number).all()
 
 
 @pytest.mark.parametrize("function", [lambda p: settle(p, 1.0), mean_velocity])

@@ -140,7 +140,7 @@ def _wells(over: str, count: int, epsilon, beta, tau, v0, theta0):
         # What runs has no wells left to change between.
         scene = (beta, found.value) if over == "tau" else (found.value, start.tau)
         runs = scene[1] > retrapping(scene[0]) * (1 + 1e-9)
-        past = runs & (jnp.arange(count) > 0)
+        past = runs & (jnp.arange(count) > 0) | (jnp.abs(scene[1]) > 1)
         value = jnp.where(found.exists & ~past, found.value, jnp.nan)
         return forward * value if over == "tau" else value
 

@@ -1,13 +1,15 @@
 """A scene of ε = 1 followed step by step until its fate is sealed, and what seals it.
 
-At the distance y before the saddle that ends a well, the potential is by
+Where |τ| ≤ 1: at the distance y before the saddle that ends a well, the potential is by
 
     D(y) = κ (1 − cos y) − τ (y − sin y),    κ = √(1 − τ²),
 
 below the saddle's.  Energy only falls: what has ½v² < D stays in this well.  So does, energy
 apart, what has 0 ≤ v ≤ ½βy close to the saddle, or anywhere in the well where β² > 3.03: the
 line v = ½βy is crossed downwards alone, as long as the force is below ¼β²y, and the force
-is at most ½τy² (y ≤ π), and at most 0.756 y.  Overdamped motions are sealed by it at once.
+is at most ½τy² (y ≤ π), and at most 0.756 y; and v = 0 is crossed downwards where the force
+is negative alone, to the right of the bottom, and so with ½v² < D.  Overdamped motions are
+sealed by it at once.
 """
 
 from collections.abc import Callable

@@ -68,7 +68,8 @@ def settle(
 
     **Raises:** `ValueError` for β = `None` and for a τ that is a function of time;
     `RuntimeError` for lanes without an end: β = 0 (a traced one), a start on a saddle,
-    `max_steps` reached.  NaN and parameters outside their domain say so in their `result`.
+    `max_steps` reached.  NaN, parameters outside their domain and |θ0| above 0.1/eps, which has
+    no digits of a turn left, say so in their `result`.
 
     A start is right whose boundary is farther away than the error of the steps, 1e-10 or so;
     the boundaries themselves are [`critical_torque`][] and [`well_boundaries`][].
@@ -105,7 +106,9 @@ def _settle(rtol: float, most: int | None, *lanes: Float[Array, "..."]) -> Settl
 
 def _one(rtol: float, most: int | None, epsilon, beta, tau, v0, theta0) -> Settled:
     good = (epsilon > 0) & (epsilon < jnp.inf) & (beta >= 0) & (beta < jnp.inf)
-    good = good & jnp.isfinite(tau) & jnp.isfinite(v0) & jnp.isfinite(theta0)
+    good = good & jnp.isfinite(tau) & jnp.isfinite(v0)
+    # An angle that has lost its turn has no well.
+    good = good & (jnp.abs(theta0) < 0.1 / jnp.finfo(theta0.dtype).eps)
     root = jnp.sqrt(jnp.where(good, epsilon, 1))
     mirror = jnp.where(tau < 0, -1, 1).astype(root.dtype)
     # A lane without an answer hangs at rest.
