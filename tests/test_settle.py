@@ -117,6 +117,16 @@ def test_special_starts():
     assert end(1.0, 1e-4, v0=7.0)[0] == 0
 
 
+def test_tolerances():
+    scene, ends = Pendulum(1.0, 0.01), []
+    for options in ({}, {"rtol": 1e-4}, {"rtol": 1e-4, "atol": 1e-12}):
+        found = settle(scene, 3.0, **options)
+        ends.append((int(found.well), float(found.time)))
+    assert ends[0] == ends[2] != ends[1]
+    with pytest.raises(ValueError, match="`rtol` must be one positive number"):
+        settle(scene, 3.0, rtol=-1.0)
+
+
 def test_lanes_without_an_end():
     def lane(beta, v0):
         return settle(Pendulum(1.0, beta, 0.1), v0, throw=False, max_steps=60)

@@ -26,6 +26,7 @@ from jaxtyping import Array, Float
 from .._arrays import common, widened
 from .._pendulum import Pendulum
 from ._implicit import implicit
+from ._limits import far_above, overdamped, ripple
 from ._panels import (
     NODES,
     Nodes,
@@ -87,37 +88,19 @@ def of_unit(beta: Scalar, tau: Scalar) -> Scalar:
     size, eps = jnp.abs(tau), jnp.finfo(tau.dtype).eps
     running = (size > retrapping(beta) * (1 + 8 * eps)) & (beta > 0) & (size < jnp.inf)
     scene = jnp.where(running, beta, 1), jnp.where(running, size, 2)
-    fast = _ripple(*lax.stop_gradient(scene)) < 2 * eps**0.5
+    fast = ripple(*lax.stop_gradient(scene)) < 2 * eps**0.5
     slow = ~fast & (scene[0] > eps**-0.25)
     v = jnp.zeros_like(beta)
     # Each with some scene of its own where it is not asked.
     for asked, how, other in (
-        (running & fast, _fast, (1, 1e9)),
-        (running & slow, _slow, (1e9, 2)),
+        (running & fast, far_above, (1, 1e9)),
+        (running & slow, overdamped, (1e9, 2)),
         (running & ~fast & ~slow, _running, (1, 2)),
     ):
         safe = (jnp.where(asked, x, y) for x, y in zip(scene, other, strict=True))
         v = jnp.where(asked, how(*safe), v)
     v = jnp.where(running, jnp.sign(tau) * v, 0 * beta * tau)
     return jnp.where((beta == 0) & (size > 0), jnp.inf * jnp.sign(tau), v)
-
-
-def _fast(beta: Scalar, tau: Scalar) -> Scalar:
-    """V = τ/β and its ripple, w = V + a cos(θ + …) with the mean V and a² = 1/(V² + β²)."""
-    return tau / beta * (1 - 0.5 * _ripple(beta, tau))
-
-
-def _ripple(beta: Scalar, tau: Scalar) -> Scalar:
-    """a²/V², whose square is what `_fast` leaves out."""
-    # Nothing is left of it long before its squares would overflow.
-    v, beta = jnp.clip(tau / beta, 1e-8, 1e8), jnp.clip(beta, 1e-8, 1e8)
-    return (1 / (v * jnp.hypot(v, beta))) ** 2
-
-
-def _slow(beta: Scalar, tau: Scalar) -> Scalar:
-    """For β⁴ ≫ ε²: θ̇ = (τ − sin θ)/β and corrections, whose order 1/β² adds up to nothing."""
-    root = jnp.sqrt((tau - 1) * (tau + 1))
-    return root / beta * (1 + root / (tau + root) / beta / beta / beta / beta)
 
 
 class Force(NamedTuple):

@@ -59,7 +59,8 @@ def settle(
     - `pendulum`: with damping and a constant torque (or none).
     - `v0`, `theta0`: angular velocity, rad/s, and angle, rad.  Shapes broadcast, with the
       leaves of the pendulum.
-    - `rtol`, `atol`: tolerances of a step, by default 1e-12 (in float32 6e-7); `atol` as `rtol`.
+    - `rtol`, `atol`: tolerances of a step, of which the smaller counts; by default 1e-12, in
+      float32 6e-7.
     - `max_steps`: by default many times what it takes, 4 million at most.
     - `throw`: whether a lane without an end raises, or says *unsettled* in `result`.
 
@@ -83,9 +84,8 @@ def settle(
     dtype = lanes[0].dtype
     if dtype in (jnp.float16, jnp.bfloat16):
         raise ValueError(f"Arguments must be float32 or float64 to be followed, but got {dtype}.")
-    usual = max(1e-12, float(jnp.finfo(dtype).eps) ** 0.9)
-    least = min(x for x in (rtol, atol, usual) if x is not None)
-    found = _settle(least, most, *lanes)
+    rtol = rtol or max(1e-12, float(jnp.finfo(dtype).eps) ** 0.9)
+    found = _settle(min(rtol, atol or rtol), most, *lanes)
     if throw:
         unsettled = found.result == Result.unsettled
         message = f"{Result[Result.unsettled]} `throw=False` says in which lane."
