@@ -58,16 +58,16 @@ class Boundary(NamedTuple):
 def critical_torque(pendulum: Pendulum, v0: ArrayLike, theta0: ArrayLike = 0.0) -> FloatArray:
     """The torque at which the motion from (θ0, v0) turns from captured to running.
 
-    **Arguments:** the `pendulum`, with damping; its own τ is not used.  `v0`, rad/s, and `theta0`,
-    rad; shapes broadcast.
+    **Arguments:** the `pendulum`, with damping and a constant torque or none, whose value is not
+    used.  `v0`, rad/s, and `theta0`, rad; shapes broadcast.
 
     **Returns:** τ_c, 1/s², from [`retrapping_torque`][] to ε: τ_r for starts that pass the first
     saddle there, else the torque at which they end on it; ε where nothing runs below.  A
     start against the torque, v0 < 0, may turn more than once: one of the values.  For
     negative torques it is −τ_c of (−θ0, −v0).
 
-    **Raises:** `ValueError` for β = `None` or 0.  NaN, and under a transformation β ≤ 0 and
-    ε ≤ 0, give NaN in their own lane.
+    **Raises:** `ValueError` for β = `None` or 0 and for τ a function of time.  NaN, and under a
+    transformation β ≤ 0 and ε ≤ 0, give NaN in their own lane.
 
     **Accuracy:** 1e-12 ε; derivatives 1e-9, in every mode and order, by the implicit function
     theorem.  Suzuki & Suzuki §8.2.
@@ -84,7 +84,8 @@ def well_boundaries(
 
     **Arguments:**
 
-    - `pendulum`, with damping; the value it has of `over` is not used.
+    - `pendulum`, with damping and a constant torque or none; the value it has of `over` is not
+      used.
     - `v0`, rad/s, and `theta0`, rad; shapes broadcast, with the leaves of the pendulum.
     - `over`: "tau" or "beta"; `count`: how many.
 
@@ -92,8 +93,8 @@ def well_boundaries(
     saddle between well n + k and the next in the direction of v0, n being the well of θ0: just
     beside it, it passes that saddle or stays.  With v0 ≥ 0 torques grow with k, towards
     τ_r, geometrically, so that some twelve differ from it in float64; dampings fall with k.
-    NaN where there is none: at |τ| ≤ ε, for β/√ε from 1e-8 to 1e8, or because past
-    the first saddle it runs for ever.
+    NaN where there is none, |τ| ≤ ε and 1e-8 ≤ β/√ε ≤ 1e8 being searched, or because past the
+    first saddle it runs for ever.
 
     **Raises:** `ValueError` for β = `None` or 0, τ a function of time, another `over`, `count` < 1.
 

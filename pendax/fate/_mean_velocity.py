@@ -58,7 +58,7 @@ def mean_velocity(pendulum: Pendulum) -> FloatArray:
 
     **Returns:** 2π/T, T the time of a turn; odd in τ; 0 for |τ| ≤ τ_r
     ([`retrapping_torque`][]); √(τ² − ε²)/β in the overdamped limit, τ/β far above ε; infinite
-    for β = 0 (a traced one) with a torque.
+    for β = 0 with a torque.
 
     **Raises:** `ValueError` for β = `None` and for τ a function of time.  Where the iteration
     doesn't converge, NaN: one or two roundings above τ_r, or with β and τ/√ε within 1e-7 of

@@ -27,8 +27,9 @@ class Settled(eqx.Module):
     """The end of a motion, lane by lane.
 
     `running`: 0 for captured, +1 or −1 for running that way for ever; `well`: n, where θ goes to
-    2πn + arcsin(τ/ε), and 0 without a meaning where it runs; `time`, s: when that was certain;
-    `result`.
+    2πn + arcsin(τ/ε), and 0 without a meaning where it runs; `time`, s: when that was certain,
+    without derivatives.  Only where `result` is `Result.successful` do they say anything: else
+    both numbers are 0.
     """
 
     running: Int[Array, "*lanes"]
@@ -68,9 +69,9 @@ def settle(
     are numbered as angles are: a motion towards negative angles ends in negative wells.
 
     **Raises:** `ValueError` for β = `None` and for a τ that is a function of time;
-    `RuntimeError` for lanes without an end: β = 0 (a traced one), a start on a saddle,
-    `max_steps` reached.  NaN, parameters outside their domain and |θ0| above 0.1/eps, which has
-    no digits of a turn left, say so in their `result`.
+    `RuntimeError` for lanes without an end: β = 0, a start that is exactly on a saddle, which
+    float(π) is not, `max_steps` reached.  NaN, parameters outside their domain and |θ0| above
+    0.1/eps, which has no digits of a turn left, say so in their `result`.
 
     A start is right whose boundary is farther away than the error of the steps, 1e-10 or so;
     the boundaries themselves are [`critical_torque`][] and [`well_boundaries`][].
