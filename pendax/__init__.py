@@ -8,6 +8,7 @@
     its spectrum     harmonics, power_spectrum
     its expansions   period_series, small_angle, critical_law, fit_critical_law
     its geometry     geometry
+    the junction     JosephsonJunction, iv_curve, FLUX_QUANTUM
     data             cycles, fit_frequency
     elsewhere        pendax.special, pendax.solvers, pendax.plot, pendax.figures
 
@@ -56,6 +57,11 @@ from .fit import Cycles as Cycles
 from .fit import Fit as Fit
 from .fit import cycles as cycles
 from .fit import fit_frequency as fit_frequency
+from .josephson import FLUX_QUANTUM as FLUX_QUANTUM
+from .josephson import Evolution as Evolution
+from .josephson import IVCurve as IVCurve
+from .josephson import JosephsonJunction as JosephsonJunction
+from .josephson import iv_curve as iv_curve
 
 
 def __getattr__(name: str):

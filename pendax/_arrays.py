@@ -65,6 +65,17 @@ def floating(*arguments: Any) -> np.dtype:
     return dtype if jnp.issubdtype(dtype, jnp.floating) else jnp.result_type(float)
 
 
+def inexact(x: Any) -> Any:
+    """Numbers as floating arrays, Python's own weakly typed; all else as it is."""
+    if not isinstance(x, NUMBERS):
+        return x
+    if isinstance(x, int | float):
+        # Under jit as well a number, for what is chosen by its value.
+        with jax.ensure_compile_time_eval():
+            return jnp.asarray(float(x))
+    return jnp.asarray(x, floating(x))
+
+
 def concrete(x: object) -> np.ndarray | None:
     """The values of `x` where Python can see them (no tracer, a number), else None."""
     if isinstance(x, Tracer) or not isinstance(x, NUMBERS):

@@ -4,11 +4,10 @@ from collections.abc import Callable
 
 import equinox as eqx
 import jax
-import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from ._arrays import NUMBERS, aligned, floating, require
+from ._arrays import aligned, inexact, require
 
 
 class Pendulum(eqx.Module):
@@ -40,9 +39,9 @@ class Pendulum(eqx.Module):
     ):
         require("epsilon", epsilon, "positive", lambda x: (x > 0) & np.isfinite(x))
         require("beta", beta, "zero or positive", lambda x: (x >= 0) & np.isfinite(x))
-        self.epsilon = _inexact(epsilon)
-        self.beta = _inexact(beta)
-        self.tau = _as_pytree(tau) if callable(tau) else _inexact(tau)
+        self.epsilon = inexact(epsilon)
+        self.beta = inexact(beta)
+        self.tau = as_pytree(tau) if callable(tau) else inexact(tau)
 
     @classmethod
     def from_si(
@@ -69,14 +68,14 @@ class Pendulum(eqx.Module):
         require("damping", damping, "zero or positive", lambda x: (x >= 0) & np.isfinite(x))
         if mass is None and not (damping is None and torque is None):
             raise ValueError("Argument `mass` must be given with `damping` or `torque`.")
-        epsilon = _inexact(gravity) / _inexact(length)
+        epsilon = inexact(gravity) / inexact(length)
         if mass is None:
             return cls(epsilon)
-        inertia = _inexact(mass) * _inexact(length) ** 2
-        beta = None if damping is None else _inexact(damping) / inertia
+        inertia = inexact(mass) * inexact(length) ** 2
+        beta = None if damping is None else inexact(damping) / inertia
         if callable(torque):
-            return cls(epsilon, beta, jax.tree_util.Partial(_over, _as_pytree(torque), inertia))
-        return cls(epsilon, beta, None if torque is None else _inexact(torque) / inertia)
+            return cls(epsilon, beta, jax.tree_util.Partial(_over, as_pytree(torque), inertia))
+        return cls(epsilon, beta, None if torque is None else inexact(torque) / inertia)
 
     @property
     def is_free(self) -> bool:
@@ -84,18 +83,7 @@ class Pendulum(eqx.Module):
         return self.beta is None and self.tau is None
 
 
-def _inexact(x):
-    """Numbers as floating arrays, Python's own weakly typed; all else as it is."""
-    if not isinstance(x, NUMBERS):
-        return x
-    if isinstance(x, int | float):
-        # Under jit as well a number, for what is chosen by its value.
-        with jax.ensure_compile_time_eval():
-            return jnp.asarray(float(x))
-    return jnp.asarray(x, floating(x))
-
-
-def _as_pytree(tau: Callable) -> Callable:
+def as_pytree(tau: Callable) -> Callable:
     """A plain function has to become a pytree to pass through `jit`."""
     leaves = jax.tree.leaves(tau)
     return jax.tree_util.Partial(tau) if any(leaf is tau for leaf in leaves) else tau

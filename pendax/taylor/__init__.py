@@ -1,13 +1,18 @@
 """Scenes without a clock, τ constant or absent, by Taylor series of the motion itself."""
 
 from ._averaged import averaged as averaged
+from ._columns import by_columns as by_columns
 from ._columns import no_tangent as no_tangent
 from ._march import March as March
 from ._march import budget as budget
 from ._march import marched as marched
 from ._march import with_derivatives as with_derivatives
 from ._overdamped import is_overdamped as is_overdamped
+from ._overdamped import overdamped as overdamped
+from ._overdamped import strength as strength
+from ._series import Method as Method
 from ._series import Scene as Scene
+from ._series import Sine as Sine
 from ._series import State as State
 from ._series import order_for as order_for
 from ._series import polynomial as polynomial

@@ -17,37 +17,57 @@ import jax
 import jax.numpy as jnp
 from jax import lax
 
-from ._series import STABLE, Method, Scene, State, method, plain, sine_and_cosine
+from ._series import (
+    STABLE,
+    Method,
+    Scene,
+    Sine,
+    State,
+    largest,
+    method,
+    plain,
+    sine_and_cosine,
+    torque_series,
+)
 
 # δ below which five sweeps leave less than eps: the error is 42 δ⁵ (Catalan's numbers).
 LARGEST = 1e-3 / 4
 _SWEEPS = 5
 
 
-def overdamped(order: int, rtol: float, atol: float, longest: float = STABLE) -> Method:
+def overdamped(
+    order: int, rtol: float, atol: float, longest: float = STABLE, sweeps: int = _SWEEPS
+) -> Method:
     """Steps on the slow curve: they take θ, and give v whatever it was."""
 
     def quickest(scene):
-        return _strength(scene) / scene.beta
+        return strength(scene) / scene.beta
 
-    return method(partial(_series, order), order, rtol, atol, quickest, longest, plain)
+    return method(partial(_series, order, sweeps), order, rtol, atol, quickest, longest, plain)
 
 
 def is_overdamped(scene: Scene):
     """Whether the slow curve exists, and is known to all digits."""
-    return _strength(scene) < LARGEST * scene.beta * scene.beta
+    return strength(scene) < LARGEST * scene.beta * scene.beta
 
 
-def _strength(scene: Scene):
-    return scene.epsilon if scene.tau is None else scene.epsilon + abs(scene.tau)
+def strength(scene: Scene):
+    """What the slow motion's rate is, times β."""
+    if scene.tau is None:
+        return scene.epsilon
+    most = scene.epsilon + largest(scene.tau)
+    if isinstance(scene.tau, Sine):
+        # A fast clock makes w as steep as a strong force.
+        return jnp.maximum(most, scene.tau.frequency * scene.beta)
+    return most
 
 
-@partial(jax.jit, static_argnums=0)
-def _series(order: int, scene: Scene, state: State):
-    strength = _strength(scene)
-    rate, delta = strength / scene.beta, strength / (scene.beta * scene.beta)
-    epsilon = scene.epsilon / strength
-    tau = None if scene.tau is None else scene.tau / strength
+@partial(jax.jit, static_argnums=(0, 1))
+def _series(order: int, sweeps: int, scene: Scene, state: State):
+    most = strength(scene)
+    rate, delta = most / scene.beta, most / (scene.beta * scene.beta)
+    epsilon = scene.epsilon / most
+    tau = [x / most for x in torque_series(scene.tau, 1 / rate, order)]
 
     def sweep(_, before):
         w: list[Any] = []
@@ -56,8 +76,8 @@ def _series(order: int, scene: Scene, state: State):
         cosines: list[Any] = [jnp.cos(state.theta)]
         for n in range(order + 1):
             f = -epsilon * sines[n]
-            if tau is not None and n == 0:
-                f = f + tau
+            if n < len(tau):
+                f = f + tau[n]
             w.append(f - delta * (n + 1) * before[n + 1])
             theta.append(w[n] / (n + 1))
             sine, cosine = sine_and_cosine(theta, sines, cosines)
@@ -66,5 +86,5 @@ def _series(order: int, scene: Scene, state: State):
         return jnp.stack([*w, jnp.zeros_like(rate)])
 
     # A loop, that its program be small.
-    w = lax.fori_loop(0, _SWEEPS, sweep, jnp.zeros(order + 2, rate.dtype))
+    w = lax.fori_loop(0, sweeps, sweep, jnp.zeros(order + 2, rate.dtype))
     return rate, list(w[: order + 1])

@@ -1,8 +1,8 @@
-"""Taylor's method for θ̈ + β θ̇ + ε sin θ = τ with constant parameters.
+"""Taylor's method for θ̈ + β θ̇ + ε sin θ = τ with constant parameters, or τ a mean and a sine.
 
 The series of θ, v = θ̇, s = sin θ and c = cos θ in t follow from each other,
 
-    (n+1) v_{n+1} = τ [n = 0] − ε s_n − β v_n,    (n+1) θ_{n+1} = v_n,
+    (n+1) v_{n+1} = τ_n − ε s_n − β v_n,    (n+1) θ_{n+1} = v_n,
     (n+1) s_{n+1} = Σ_k v_k c_{n−k},              (n+1) c_{n+1} = − Σ_k v_k s_{n−k},
 
 and the last two terms say how far the series may be trusted, before the step is taken: no
@@ -35,11 +35,41 @@ STABLE = 2.0
 
 
 class Scene(NamedTuple):
-    """The parameters, a term that is `None` being absent."""
+    """The parameters, a term that is `None` being absent; τ a number or a [`Sine`][]."""
 
     epsilon: Any
     beta: Any
     tau: Any
+
+
+class Sine(NamedTuple):
+    """The torque mean + amplitude sin(clock + frequency t)."""
+
+    mean: Any
+    amplitude: Any
+    frequency: Any
+    clock: Any
+
+
+def largest(tau: Any) -> Any:
+    """The most that |τ| can be."""
+    return jnp.abs(tau.mean) + jnp.abs(tau.amplitude) if isinstance(tau, Sine) else jnp.abs(tau)
+
+
+def torque_series(tau: Any, unit: Any, order: int) -> list[Any]:
+    """τ_0, τ_1, … of time counted in `unit`, as far as they are not 0."""
+    if tau is None:
+        return []
+    if not isinstance(tau, Sine):
+        return [tau]
+    wave = [jnp.sin(tau.clock), jnp.cos(tau.clock)]
+    wave += [-wave[0], -wave[1]]
+    growth, coefficients = tau.amplitude, []
+    for n in range(order + 1):
+        coefficients.append(growth * wave[n % 4])
+        growth = growth * (tau.frequency * unit / (n + 1))
+    coefficients[0] = tau.mean + coefficients[0]
+    return coefficients
 
 
 class State(NamedTuple):
@@ -144,13 +174,15 @@ def scaled_series(order: int, scene: Scene, state: State):
     for other in (jnp.abs(state.v), scene.beta):
         rate = rate if other is None else jnp.maximum(rate, other)
     if scene.tau is not None:
-        rate = jnp.maximum(rate, jnp.sqrt(jnp.abs(scene.tau)))
+        rate = jnp.maximum(rate, jnp.sqrt(largest(scene.tau)))
+    if isinstance(scene.tau, Sine):
+        rate = jnp.maximum(rate, scene.tau.frequency)
     rate = lax.stop_gradient(rate)
     unit = 1 / rate
     scaled = Scene(
         scene.epsilon * unit * unit,
         None if scene.beta is None else scene.beta * unit,
-        None if scene.tau is None else scene.tau * unit * unit,
+        [x * unit * unit for x in torque_series(scene.tau, unit, order)],
     )
     theta: list[Any] = [state.theta]
     v: list[Any] = [state.v * unit]
@@ -166,12 +198,12 @@ def scaled_series(order: int, scene: Scene, state: State):
 
 
 def force(scene: Scene, sines, v, n: int) -> Scalar:
-    """The n-th coefficient of v̇."""
+    """The n-th coefficient of v̇, τ being its series."""
     total = -scene.epsilon * sines[n]
     if scene.beta is not None:
         total = total - scene.beta * v[n]
-    if scene.tau is not None and n == 0:
-        total = total + scene.tau
+    if n < len(scene.tau):
+        total = total + scene.tau[n]
     return total
 
 

@@ -1,0 +1,180 @@
+"""A junction with capacitance under an alternating current, seen once a period.
+
+    φ̈ + β φ̇ + sin φ = i0 + i1 sin Ωt
+
+The current i0 is swept, and the junction goes on from where it was, so that it stays on a
+branch until that ends.  Where a period returns it to the same state a whole number of turns
+on, it is locked, and that number is the answer.  Elsewhere turns are averaged with a weight
+that is smooth to every order, exp(−1/x(1 − x)), and so, where the motion is quasi-periodic, with
+an error that falls faster than any power of their number (Das, Saiki, Sander & Yorke,
+Nonlinearity 30 (2017) 4111), where a plain average's goes like 1/number.
+
+How much the average is in doubt is what the averages of its four quarters say, much shorter
+ones; where the junction is chaotic, that is the standard error.
+"""
+
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, Bool, Float
+
+from ..taylor import Method, Scene, Sine, State, order_for, overdamped, strength, taylor
+
+Scalar = Float[Array, ""]
+
+_MOST = 1_000_000  # steps in a period
+_LIMIT, _SWEEPS, _ORDER = 0.02, 10, 12  # of the slow curve: 1e-13 is left (Catalan's numbers)
+_LEFT = 20.0  # e-folds of a perturbation that are waited for
+_AT_LEAST = 8  # periods
+
+
+class Junction(NamedTuple):
+    """Time in 1/ω_p, currents in Ic; lanes only for [`glides`][]."""
+
+    beta: Float[Array, "..."]
+    amplitude: Float[Array, "..."]
+    frequency: Float[Array, "..."]
+
+
+def glides(junction: Junction, most: Float[Array, "..."]) -> Bool[Array, "..."]:
+    """Whether v is a function of φ and the clock, at currents up to `most`."""
+    torque = Sine(most, junction.amplitude, junction.frequency, 0.0)
+    scene = Scene(1.0, junction.beta, torque)
+    return strength(scene) < _LIMIT * junction.beta * junction.beta
+
+
+class Methods(NamedTuple):
+    """Which a program has in it: Taylor's own, and that of the slow curve v(θ)."""
+
+    full: bool
+    slow: bool
+
+
+class Turns(NamedTuple):
+    """Of φ in a period, at each current, and the uncertainty of their mean."""
+
+    mean: Float[Array, " currents"]
+    error: Float[Array, " currents"]
+    locked: Bool[Array, " currents"]
+
+
+def swept(junction: Junction, currents: Float[Array, " currents"], periods: int, methods: Methods):
+    """Turns in a period while i0 goes through `currents`, from the first on.
+
+    It starts at rest if it can, else with the voltage of the resistance alone.
+    """
+    first = currents[0]
+    period = partial(_period, junction, glides(junction, jnp.max(jnp.abs(currents))), methods)
+    resting = jnp.abs(first) <= 1
+    start = State(
+        jnp.where(resting, jnp.arcsin(jnp.where(resting, first, 0)), 0),
+        jnp.where(resting, 0, first / junction.beta),
+    )
+
+    def at_current(state, i0):
+        end, *turns = _watched(junction, partial(period, i0), state, periods)
+        fine = jnp.isfinite(end.theta) & jnp.isfinite(end.v)
+        return State(*(jnp.where(fine, x, y) for x, y in zip(end, state, strict=True))), turns
+
+    return Turns(*lax.scan(at_current, start, currents)[1])
+
+
+class Watch(NamedTuple):
+    period: Scalar  # how many have gone
+    state: State
+    total: Float[Array, "5"]  # of weight · turns: the whole, and its quarters
+    turns: Scalar  # of the last period
+    moved: Scalar  # by it, beyond whole turns
+    before: Scalar  # and by the one before
+
+
+def _watched(junction: Junction, period: Callable, start: State, periods: int):
+    """The state in the end, the mean turns in a period, their uncertainty, and whether locked."""
+    dtype = start.v.dtype
+    eps = jnp.finfo(dtype).eps
+    still = 1e4 * eps  # 2e-12
+    relaxing = 2 / junction.beta + 2 * junction.beta
+    wait = jnp.ceil(_LEFT * relaxing * junction.frequency / (2 * np.pi))
+    wait = jnp.maximum(jnp.minimum(wait, _MOST), _AT_LEAST)
+
+    def unfinished(at: Watch):
+        locked = (at.moved < still) & (at.before < still) & (at.period > 2)
+        return ~locked & (at.period < wait + periods) & jnp.isfinite(at.state.v)
+
+    def one(at: Watch):
+        end = period(at.state)
+        turns = (end.theta - at.state.theta) / (2 * np.pi)
+        whole = jnp.round(turns)
+        moved = 2 * np.pi * jnp.abs(turns - whole) + jnp.abs(end.v - at.state.v)
+        x = (at.period - wait + 0.5) / periods
+        weights = jnp.stack([_bump(x), *(_bump(4 * x - k) for k in range(4))])
+        # By whole turns alone: what is rounded then does not grow.
+        back = State(end.theta - 2 * np.pi * whole, end.v)
+        return Watch(at.period + 1, back, at.total + weights * turns, turns, moved, at.moved)
+
+    zero, far = jnp.zeros_like(start.v), jnp.full_like(start.v, jnp.inf)
+    begin = Watch(zero, start, jnp.zeros(5, dtype), zero, far, far)
+    end = lax.while_loop(unfinished, one, begin)
+
+    locked = (end.moved < still) & (end.before < still)
+    x = (jnp.arange(periods, dtype=dtype) + 0.5) / periods
+    weight = jnp.sum(_bump(x))
+    quarter = jnp.stack([jnp.sum(_bump(4 * x - k)) for k in range(4)])
+    mean, parts = end.total[0] / weight, end.total[1:] / quarter
+    spread = jnp.sqrt(jnp.sum((parts - jnp.mean(parts)) ** 2) / 12)
+    # Beside a step, within `still` of one that would be locked, it would take so long to pass.
+    passing = jnp.sqrt(end.moved) / np.pi
+    bad = ~(jnp.isfinite(end.state.v) & (wait > 0))
+    mean = jnp.where(bad, jnp.nan, jnp.where(locked, jnp.round(end.turns), mean))
+    error = jnp.where(bad, jnp.nan, jnp.where(locked, passing, spread + 4 * eps * jnp.abs(mean)))
+    return end.state, mean, error, locked
+
+
+def _bump(x: Float[Array, "..."]) -> Float[Array, "..."]:
+    """exp(−1/x(1 − x)) from 0 to 1."""
+    inside = (x > 0) & (x < 1)
+    y = jnp.where(inside, x, 0.5)
+    return jnp.where(inside, jnp.exp(4 - 1 / (y * (1 - y))), 0)
+
+
+def _period(
+    junction: Junction, slowly: Bool[Array, ""], methods: Methods, i0: Scalar, start: State
+) -> State:
+    """A period on; NaN where that takes too many steps."""
+    rtol = 200 * float(jnp.finfo(i0.dtype).eps)
+    full = taylor(order_for(rtol, rtol), rtol, rtol)
+    slow = overdamped(_ORDER, rtol, rtol, sweeps=_SWEEPS)
+    duration = 2 * np.pi / junction.frequency
+
+    def step(at):
+        t, state, steps = at
+        clock = junction.frequency * t
+        torque = Sine(i0, junction.amplitude, junction.frequency, clock)
+        now = Scene(jnp.ones_like(i0), junction.beta, torque)
+        chosen = [how for how, asked in zip((full, slow), methods, strict=True) if asked]
+        left = duration - t
+        moves = [_within(how, now, state, left) for how in chosen]
+        if len(moves) == 2:
+            moves = [jax.tree.map(lambda x, y: jnp.where(slowly, y, x), *moves)]
+        h, after = moves[0]
+        return jnp.where(h == left, duration, t + h), after, steps + 1
+
+    def unfinished(at):
+        t, state, steps = at
+        return (t < duration) & (steps < _MOST) & jnp.isfinite(state.v)
+
+    begin = jnp.zeros_like(i0), start, jnp.zeros((), jnp.int32)
+    t, end, _ = lax.while_loop(unfinished, step, begin)
+    return State(*(jnp.where(t == duration, x, jnp.nan) for x in end))
+
+
+def _within(how: Method, scene: Scene, state: State, left: Scalar) -> tuple[Scalar, State]:
+    """A step of what is left at most, and the last two alike."""
+    h = how.size(scene, state)
+    h = jnp.where(h < left, jnp.minimum(h, jnp.maximum(0.5 * left, left - h)), left)
+    return h, how.step(scene, state, h)
