@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import NoReturn
 
-from . import _sweep
+from . import _iv, _sweep
 from ._error import UserError
 
-_COMMANDS = {"sweep": _sweep}
+_COMMANDS = {"sweep": _sweep, "iv": _iv}
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -49,7 +49,7 @@ class _Parser(argparse.ArgumentParser):
 def _parser() -> argparse.ArgumentParser:
     parser = _Parser(
         prog="pendax",
-        description="The pendulum beyond small angles, θ̈ + ε sin θ = 0.",
+        description="The pendulum beyond small angles, and the Josephson junction.",
         epilog="`pendax` alone is `pendax sweep`; `pendax COMMAND --help` explains a command.",
     )
     parser.add_argument("--version", action="version", version=f"pendax {version('pendax')}")

@@ -59,10 +59,11 @@ def rotation_number(i0: Scalar, i1: Scalar, omega: Scalar) -> tuple[Scalar, Scal
 def _period(p: list[Scalar]) -> tuple[tuple[Scalar, Scalar], tuple[Scalar, Scalar]]:
     """a after a period: Re(a)/|a| and ln |a|; its argument, continued from 0, and the steps."""
     i0, i1, omega = p
-    strength = lax.stop_gradient(jnp.abs(i0) + jnp.abs(i1) + 1)
-    wanted = jnp.ceil(np.pi * strength / (_STRIDE * lax.stop_gradient(omega)))
+    # The solution's rate, and the current's.
+    rate = 0.5 * (jnp.abs(i0) + jnp.abs(i1) + 1) + omega
+    wanted = jnp.ceil(lax.stop_gradient(2 * np.pi / omega * rate / _STRIDE))
     # NaN as well takes none.
-    steps = jnp.where(wanted <= MOST_STEPS, jnp.maximum(wanted, 8), jnp.inf)
+    steps = jnp.where(wanted <= MOST_STEPS, wanted, jnp.inf)
     going = jnp.where(steps < jnp.inf, steps, 0)
 
     def step(at):

@@ -3,11 +3,12 @@
     φ̈ + β φ̇ + sin φ = i0 + i1 sin Ωt
 
 The current i0 is swept, and the junction goes on from where it was, so that it stays on a
-branch until that ends.  Where a period returns it to the same state a whole number of turns
-on, it is locked, and that number is the answer.  Elsewhere turns are averaged with a weight
-that is smooth to every order, exp(−1/x(1 − x)), and so, where the motion is quasi-periodic, with
-an error that falls faster than any power of their number (Das, Saiki, Sander & Yorke,
-Nonlinearity 30 (2017) 4111), where a plain average's goes like 1/number.
+branch until that ends; from one value to the next the current goes in steps, as a jump would
+kick it.  Where a period returns it to the same state a whole number of turns on, it is locked,
+and that number is the answer.  Elsewhere turns are averaged with a weight that is smooth to
+every order, exp(−1/x(1 − x)), and so, where the motion is quasi-periodic, with an error that
+falls faster than any power of their number (Das, Saiki, Sander & Yorke, Nonlinearity 30 (2017)
+4111), where a plain average's goes like 1/number.
 
 How much the average is in doubt is what the averages of its four quarters say, much shorter
 ones; where the junction is chaotic, that is the standard error.
@@ -28,9 +29,9 @@ from ..taylor import Method, Scene, Sine, State, order_for, overdamped, strength
 Scalar = Float[Array, ""]
 
 _MOST = 1_000_000  # steps in a period
-_LIMIT, _SWEEPS, _ORDER = 0.02, 10, 12  # of the slow curve: 1e-13 is left (Catalan's numbers)
+_LIMIT, MOST_SWEEPS, _ORDER = 0.02, 10, 12  # of the slow curve
 _LEFT = 20.0  # e-folds of a perturbation that are waited for
-_AT_LEAST = 8  # periods
+_RAMP = 8  # periods in which the current comes to its next value
 
 
 class Junction(NamedTuple):
@@ -43,16 +44,20 @@ class Junction(NamedTuple):
 
 def glides(junction: Junction, most: Float[Array, "..."]) -> Bool[Array, "..."]:
     """Whether v is a function of φ and the clock, at currents up to `most`."""
+    return smallness(junction, most) < _LIMIT
+
+
+def smallness(junction: Junction, most: Float[Array, "..."]) -> Float[Array, "..."]:
+    """δ, by which the slow curve is a series; n sweeps leave less than (4δ)^n."""
     torque = Sine(most, junction.amplitude, junction.frequency, 0.0)
-    scene = Scene(1.0, junction.beta, torque)
-    return strength(scene) < _LIMIT * junction.beta * junction.beta
+    return strength(Scene(1.0, junction.beta, torque)) / (junction.beta * junction.beta)
 
 
 class Methods(NamedTuple):
     """Which a program has in it: Taylor's own, and that of the slow curve v(θ)."""
 
     full: bool
-    slow: bool
+    sweeps: int  # of the latter, if any
 
 
 class Turns(NamedTuple):
@@ -76,12 +81,17 @@ def swept(junction: Junction, currents: Float[Array, " currents"], periods: int,
         jnp.where(resting, 0, first / junction.beta),
     )
 
-    def at_current(state, i0):
-        end, *turns = _watched(junction, partial(period, i0), state, periods)
-        fine = jnp.isfinite(end.theta) & jnp.isfinite(end.v)
-        return State(*(jnp.where(fine, x, y) for x, y in zip(end, state, strict=True))), turns
+    def at_current(before, i0):
+        def ramped(number, state):
+            share = jnp.minimum((number + 1) / _RAMP, 1)
+            return period(before[0] + share * (i0 - before[0]), state)
 
-    return Turns(*lax.scan(at_current, start, currents)[1])
+        end, *turns = _watched(junction, ramped, before[1], periods)
+        fine = jnp.isfinite(end.theta) & jnp.isfinite(end.v)
+        kept = jax.tree.map(lambda x, y: jnp.where(fine, x, y), (i0, end), before)
+        return kept, turns
+
+    return Turns(*lax.scan(at_current, (first, start), currents)[1])
 
 
 class Watch(NamedTuple):
@@ -100,14 +110,14 @@ def _watched(junction: Junction, period: Callable, start: State, periods: int):
     still = 1e4 * eps  # 2e-12
     relaxing = 2 / junction.beta + 2 * junction.beta
     wait = jnp.ceil(_LEFT * relaxing * junction.frequency / (2 * np.pi))
-    wait = jnp.maximum(jnp.minimum(wait, _MOST), _AT_LEAST)
+    wait = _RAMP + jnp.minimum(wait, _MOST)
 
     def unfinished(at: Watch):
-        locked = (at.moved < still) & (at.before < still) & (at.period > 2)
+        locked = (at.moved < still) & (at.before < still) & (at.period > _RAMP + 2)
         return ~locked & (at.period < wait + periods) & jnp.isfinite(at.state.v)
 
     def one(at: Watch):
-        end = period(at.state)
+        end = period(at.period, at.state)
         turns = (end.theta - at.state.theta) / (2 * np.pi)
         whole = jnp.round(turns)
         moved = 2 * np.pi * jnp.abs(turns - whole) + jnp.abs(end.v - at.state.v)
@@ -146,9 +156,9 @@ def _period(
     junction: Junction, slowly: Bool[Array, ""], methods: Methods, i0: Scalar, start: State
 ) -> State:
     """A period on; NaN where that takes too many steps."""
-    rtol = 200 * float(jnp.finfo(i0.dtype).eps)
+    rtol = 2000 * float(jnp.finfo(i0.dtype).eps)
     full = taylor(order_for(rtol, rtol), rtol, rtol)
-    slow = overdamped(_ORDER, rtol, rtol, sweeps=_SWEEPS)
+    slow = overdamped(_ORDER, rtol, rtol, sweeps=methods.sweeps)
     duration = 2 * np.pi / junction.frequency
 
     def step(at):

@@ -1,0 +1,145 @@
+"""`pendax iv`: a measured I–V loop, its branches, and a model's over it."""
+
+import argparse
+import math
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ._error import UserError
+from ._loop import Loop, crossings, read_loop
+from ._output import output_folder
+from ._quantity import AMPERE, FARAD, OHM, positive
+
+if TYPE_CHECKING:
+    from ..josephson import JosephsonJunction
+
+SUMMARY = "a junction's measured I–V loop, and a model's over it"
+DESCRIPTION = """\
+Read a measured I–V loop, separate its branches, current rising and falling, and print
+where they leave zero voltage and return to it; write both with a figure.
+
+With --critical-current and --resistance, and --capacitance for a junction with hysteresis,
+the model's curve is drawn over them.  Values are in A, ohm and F, or with a unit of their
+own: --critical-current 112.5uA --resistance 8 --capacitance 0.4pF."""
+
+
+def add_arguments(parser: argparse.ArgumentParser) -> None:
+    add = parser.add_argument
+    add("loop", type=Path, metavar="LOOP.csv",
+        help="a header line, a current and a voltage column")  # fmt: skip
+    add("--current", metavar="NAME", help="current column (default: I…, current…)")
+    add("--voltage", metavar="NAME", help="voltage column (default: V…, U…, voltage…)")
+    add("--current-unit", metavar="UNIT", help="as uA (default: the ending of the column's name)")
+    add("--voltage-unit", metavar="UNIT", help="as mV (default: the ending of the column's name)")
+    add("--out", type=Path, default=Path("pendax-out"), metavar="FOLDER",
+        help="where the files go (default pendax-out)")  # fmt: skip
+    add("--quiet", action="store_true", help="print nothing but errors")
+    model = parser.add_argument_group("the model")
+    add = model.add_argument
+    add("--critical-current", type=positive(AMPERE), metavar="IC", help="Ic, A")
+    add("--resistance", type=positive(OHM), metavar="R", help="R, ohm")
+    add("--capacitance", type=positive(FARAD), metavar="C",
+        help="C, F (default: none, the first-order junction)")  # fmt: skip
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Everything is computed and drawn before the first file reaches the output folder."""
+    import jax
+
+    jax.config.update("jax_enable_x64", True)
+    say = (lambda *lines, **how: None) if arguments.quiet else print
+    junction = _junction(arguments)
+    loop = read_loop(
+        arguments.loop,
+        arguments.current,
+        arguments.voltage,
+        arguments.current_unit,
+        arguments.voltage_unit,
+    )
+    with output_folder(arguments.out) as folder:
+        model = None if junction is None else _voltages(junction, loop)
+        say(_report(arguments.loop, loop, junction, model))
+        _write(loop, model, folder / "iv.csv")
+        _draw(loop, junction, folder / "iv.png")
+    say("\nwrote", *(arguments.out / name for name in ("iv.csv", "iv.png")), sep="\n  ")
+
+
+def _junction(arguments: argparse.Namespace) -> "JosephsonJunction | None":
+    from ..josephson import JosephsonJunction
+
+    given = arguments.critical_current, arguments.resistance
+    if given == (None, None) and arguments.capacitance is None:
+        return None
+    if None in given:
+        raise UserError("the model: expected --critical-current and --resistance together")
+    try:
+        return JosephsonJunction(*given, arguments.capacitance)
+    except ValueError as error:
+        raise UserError(f"the model: {error}") from None
+
+
+def _voltages(junction: "JosephsonJunction", loop: Loop) -> np.ndarray:
+    """The model's at each current, of the branch it was measured on."""
+    from ..josephson import iv_curve
+
+    order = np.argsort(loop.current)
+    try:
+        curve = iv_curve(junction, loop.current[order])
+    except ValueError as error:
+        raise UserError(f"the model: {error}") from None
+    voltages = np.empty((2, loop.current.size))
+    voltages[:, order] = curve.voltage_down, curve.voltage_up
+    return np.where(loop.rising, voltages[1], voltages[0])
+
+
+def _report(path: Path, loop: Loop, junction, model: np.ndarray | None) -> str:
+    from .. import retrapping_torque
+
+    found = crossings(loop)
+    lines = [
+        f"{path}: {loop.current.size} points, {loop.rising.sum()} with rising current, "
+        f"I from {_amperes(loop.current.min())} to {_amperes(loop.current.max())}",
+        f"leaves zero voltage at {_both(found.switching)}, "
+        f"returns to it at {_both(found.retrapping)}   (a twentieth of the largest voltage)",
+    ]
+    if junction is not None and model is not None:
+        unit, beta_c = float(junction.critical_current), float(junction.stewart_mccumber)
+        ir = unit * float(retrapping_torque(1 / math.sqrt(beta_c))) if beta_c else unit
+        rms = math.sqrt(np.mean((loop.voltage - model) ** 2))
+        lines += [
+            f"model: Ic = {_amperes(unit)}, Ir = {_amperes(ir)}, β_c = {beta_c:.5g}, "
+            f"Ic R = {1e3 * float(junction.characteristic_voltage):.5g} mV; "
+            f"measured − model: rms {1e6 * rms:.4g} µV"
+        ]
+    return "\n".join(lines)
+
+
+def _amperes(x: float) -> str:
+    return "–" if math.isnan(x) else f"{1e6 * x:.5g} µA"
+
+
+def _both(pair: tuple[float, float]) -> str:
+    return " and ".join(_amperes(x) for x in pair)
+
+
+def _write(loop: Loop, model: np.ndarray | None, path: Path) -> None:
+    columns = {"current_A": loop.current, "voltage_V": loop.voltage, "rising": loop.rising}
+    if model is not None:
+        columns["model_V"] = model
+    table = np.column_stack([np.asarray(x, float) for x in columns.values()])
+    np.savetxt(path, table, "%.12g", ",", header=",".join(columns), comments="")
+
+
+def _draw(loop: Loop, junction: "JosephsonJunction | None", path: Path) -> None:
+    from .. import plot
+    from ..josephson import iv_curve
+
+    figure = plot.new_figure(7.5, 5)
+    ax = plot.measured_loop(figure.subplots(), loop.current, loop.voltage, loop.rising)
+    if junction is not None:
+        ends = np.min(loop.current), np.max(loop.current)
+        plot.iv_curve(ax, iv_curve(junction, np.linspace(*ends, 2001)))
+    ax.legend(loc="upper left")
+    figure.savefig(path)
