@@ -133,13 +133,16 @@ def _write(loop: Loop, model: np.ndarray | None, path: Path) -> None:
 
 
 def _draw(loop: Loop, junction: "JosephsonJunction | None", path: Path) -> None:
+    import matplotlib as mpl
+
     from .. import plot
     from ..josephson import iv_curve
 
-    figure = plot.new_figure(7.5, 5)
-    ax = plot.measured_loop(figure.subplots(), loop.current, loop.voltage, loop.rising)
-    if junction is not None:
-        ends = np.min(loop.current), np.max(loop.current)
-        plot.iv_curve(ax, iv_curve(junction, np.linspace(*ends, 2001)))
-    ax.legend(loc="upper left")
-    figure.savefig(path)
+    with mpl.rc_context(plot.STYLE):
+        figure = plot.new_figure(7.5, 5)
+        ax = plot.measured_loop(figure.subplots(), loop.current, loop.voltage, loop.rising)
+        if junction is not None:
+            ends = np.min(loop.current), np.max(loop.current)
+            plot.iv_curve(ax, iv_curve(junction, np.linspace(*ends, 2001)))
+        ax.legend(loc="upper left")
+        figure.savefig(path)

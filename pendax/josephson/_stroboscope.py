@@ -28,6 +28,7 @@ from ..taylor import Method, Scene, Sine, State, order_for, overdamped, strength
 
 Scalar = Float[Array, ""]
 
+_TOLERANCE = 2000.0  # of a step, in eps
 _MOST = 1_000_000  # steps in a period
 _LIMIT, MOST_SWEEPS, _ORDER = 0.02, 10, 12  # of the slow curve
 _LEFT = 20.0  # e-folds of a perturbation that are waited for
@@ -141,7 +142,8 @@ def _watched(junction: Junction, period: Callable, start: State, periods: int):
     passing = jnp.sqrt(end.moved) / np.pi
     bad = ~(jnp.isfinite(end.state.v) & (wait > 0))
     mean = jnp.where(bad, jnp.nan, jnp.where(locked, jnp.round(end.turns), mean))
-    error = jnp.where(bad, jnp.nan, jnp.where(locked, passing, spread + 4 * eps * jnp.abs(mean)))
+    solved = 2 * _TOLERANCE * eps * (1 + jnp.abs(mean))
+    error = jnp.where(bad, jnp.nan, jnp.where(locked, passing, spread + solved))
     return end.state, mean, error, locked
 
 
@@ -156,7 +158,7 @@ def _period(
     junction: Junction, slowly: Bool[Array, ""], methods: Methods, i0: Scalar, start: State
 ) -> State:
     """A period on; NaN where that takes too many steps."""
-    rtol = 2000 * float(jnp.finfo(i0.dtype).eps)
+    rtol = _TOLERANCE * float(jnp.finfo(i0.dtype).eps)
     full = taylor(order_for(rtol, rtol), rtol, rtol)
     slow = overdamped(_ORDER, rtol, rtol, sweeps=methods.sweeps)
     duration = 2 * np.pi / junction.frequency
