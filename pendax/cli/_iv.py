@@ -139,7 +139,7 @@ def _draw(loop: Loop, junction: "JosephsonJunction | None", path: Path) -> None:
     from ..josephson import iv_curve
 
     with mpl.rc_context(plot.STYLE):
-        figure = plot.new_figure(7.5, 5)
+        figure = plot.new_figure(7.5, 5.0)
         ax = plot.measured_loop(figure.subplots(), loop.current, loop.voltage, loop.rising)
         if junction is not None:
             ends = np.min(loop.current), np.max(loop.current)

@@ -33,7 +33,7 @@ def iv_curve(
     junction: JosephsonJunction,
     current: ArrayLike,
     *,
-    drive: tuple[ArrayLike, ArrayLike] | None = None,
+    drive: tuple[ArrayLike, ...] | None = None,
     periods: int = 512,
 ) -> IVCurve:
     """The I–V curve of a junction that a current source sweeps, with its hysteresis.

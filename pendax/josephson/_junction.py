@@ -86,7 +86,8 @@ class JosephsonJunction(eqx.Module):
     @property
     def characteristic_voltage(self) -> FloatArray:
         """Ic R, V."""
-        return self.critical_current * self.resistance
+        current, resistance, _ = self._leaves()
+        return current * resistance
 
     @property
     def stewart_mccumber(self) -> FloatArray:

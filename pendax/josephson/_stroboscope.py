@@ -10,8 +10,10 @@ every order, exp(−1/x(1 − x)), and so, where the motion is quasi-periodic, w
 falls faster than any power of their number (Das, Saiki, Sander & Yorke, Nonlinearity 30 (2017)
 4111), where a plain average's goes like 1/number.
 
-How much the average is in doubt is what the averages of its four quarters say, much shorter
-ones; where the junction is chaotic, that is the standard error.
+How much the average is in doubt is how far the farthest of its four quarters, averaged alike, is
+off it: of random quasi-periodic sequences that covers 97 in 100 at 128 periods and 98 or 99 at
+512, what is left being next to resonances that take longer than all of it to pass; of chaotic
+ones 97.
 """
 
 from collections.abc import Callable
@@ -137,7 +139,7 @@ def _watched(junction: Junction, period: Callable, start: State, periods: int):
     weight = jnp.sum(_bump(x))
     quarter = jnp.stack([jnp.sum(_bump(4 * x - k)) for k in range(4)])
     mean, parts = end.total[0] / weight, end.total[1:] / quarter
-    spread = jnp.sqrt(jnp.sum((parts - jnp.mean(parts)) ** 2) / 12)
+    spread = jnp.max(jnp.abs(parts - mean))
     # Beside a step, within `still` of one that would be locked, it would take so long to pass.
     passing = jnp.sqrt(end.moved) / np.pi
     bad = ~(jnp.isfinite(end.state.v) & (wait > 0))
