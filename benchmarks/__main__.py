@@ -37,6 +37,11 @@ def main() -> int:
     fate.add_argument("--pixels", type=int, default=200, help="of each map that are compared")
     fate.add_argument("--rounds", type=int, default=5, help="timings of each, interleaved")
     fate.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
+    junction = commands.add_parser("junction", help="I–V curves beside time stepping")
+    junction.add_argument("--seed", type=int, default=1, help="draws other junctions")
+    junction.add_argument("--scenes", type=int, default=40, help="random voltages of either kind")
+    junction.add_argument("--rounds", type=int, default=5, help="timings of each, interleaved")
+    junction.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
     options = vars(parser.parse_args())
 
     import jax
