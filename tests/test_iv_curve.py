@@ -216,6 +216,29 @@ def test_a_drive_of_no_amplitude(beta_c):
         assert (error < 2e-2 * HERTZ * FLUX_QUANTUM).all()
 
 
+def test_beside_a_step():
+    """Where no slip is seen, it may be by one; where rounding hides one, by that."""
+    for d in (1e-10, 1e-7, 1e-5):
+        current = np.array([1.0, 1 + d]) * IC
+        still = iv_curve(of_beta_c(0.5), current).voltage_up[1]
+        driven = iv_curve(of_beta_c(0.5), current, drive=(0.0, HERTZ))
+        assert abs(driven.voltage_up[1] - still) < driven.error_up[1]
+    for d, omega in ((1e-9, 9e3), (1e-9, 0.01), (2.3e-16, 1.0), (2.3e-16, 1e-3)):
+        current, drive = (1 + d) * IC, (0.0, omega * IC * R / FLUX_QUANTUM)
+        still, driven = iv_curve(RSJ, current), iv_curve(RSJ, current, drive=drive)
+        assert abs(driven.voltage_up - still.voltage_up) < driven.error_up
+
+
+def test_fractional_steps():
+    """An underdamped junction locks at halves as well."""
+    current = np.linspace(1.48, 1.55, 36) * IC
+    curve = iv_curve(of_beta_c(1.0), current, drive=(1.5 * IC, 0.8 * IC * R / FLUX_QUANTUM))
+    turns = curve.voltage_up / (0.8 * IC * R)
+    half = np.abs(turns - 1.5) < 1e-14
+    assert half.sum() > 1
+    assert (curve.error_up[half] < 1e-6 * IC * R).all()
+
+
 def test_vanishing_capacitance_under_a_drive():
     """The other method, many turns for one, comes to the first-order junction's voltage."""
     current, drive = np.array([0.9, 1.234, 1.9]) * IC, (0.8 * IC, HERTZ)
@@ -265,6 +288,11 @@ def test_lanes():
             assert bad.tolist() == [False, True, True, False]
     with_nan = iv_curve(of_beta_c(4.0), np.array([0.5, np.nan, 1.5]) * IC)
     assert jnp.isnan(with_nan.voltage_up).tolist() == [False, True, False]
+    with_nan = np.array([np.nan, 0.5, np.nan, 1.5]) * IC
+    with_nan = iv_curve(of_beta_c(1.0), with_nan, drive=(IC, HERTZ), periods=16)
+    assert jnp.isnan(with_nan.voltage_up).tolist() == [True, False, True, False]
+    none = JosephsonJunction(np.zeros(0), np.ones(1), np.ones(1) * 1e-12)
+    assert iv_curve(none, current, drive=(IC, HERTZ)).voltage_up.shape == (0, 5)
 
 
 @pytest.mark.parametrize(

@@ -92,6 +92,21 @@ def test_phase_over_time(tau):
             np.testing.assert_allclose(found.voltage[k] / (IC * R), float(rate), atol=off)
 
 
+def test_settling():
+    """Without a current tan(φ/2) falls like e^(−s): to the last digits, from and to any time."""
+    junction, unit = JosephsonJunction(IC, R), REDUCED / (IC * R)
+    for phase0, s in ((1e-20, -40.0), (1e-10, -30.0), (1e-10, 40.0), (3.0, 2.0), (0.0, -1e5)):
+        found = junction.evolve(s * unit, 0.0, phase0)
+        true = 2 * np.arctan(np.tan(phase0 / 2) * np.exp(min(-s, 700)))
+        np.testing.assert_allclose(found.phase, true, rtol=1e-13)
+        np.testing.assert_allclose(found.voltage, -IC * R * np.sin(true), rtol=1e-13)
+    for tau, phase0 in ((1e-12, np.pi / 2), (0.999, 1.5), (-0.3, 20.0)):
+        turns = round((phase0 - np.arcsin(tau)) / (2 * np.pi))
+        found = junction.evolve(1e5 * unit, tau * IC, phase0)
+        np.testing.assert_allclose(found.phase, np.arcsin(tau) + 2 * np.pi * turns, rtol=1e-14)
+        assert abs(found.voltage) < 1e-90
+
+
 def test_time_goes_backwards():
     junction = JosephsonJunction(IC, R)
     t = 5 * REDUCED / (IC * R)
@@ -131,6 +146,8 @@ def test_shapes_and_lanes():
     assert found.ts.shape == (5,)
     wrong = jax.vmap(lambda ic: JosephsonJunction(ic, 1.0, 1e-12).damping)(jnp.array([1e-6, -1e-6]))
     assert jnp.isnan(wrong).tolist() == [False, True]
+    wrong = jax.vmap(lambda r: JosephsonJunction(IC, r).evolve(1e-12, IC).phase)
+    assert jnp.isnan(wrong(jnp.array([R, -R, jnp.inf]))).tolist() == [False, True, True]
 
 
 def test_simulated_voltage():

@@ -25,9 +25,10 @@ def driven(
 ) -> list[FloatArray]:
     """Voltages on the way up and down, and their uncertainties; currents behind the lanes."""
     amplitude, frequency = _checked(drive, junction)
-    if current.size == 0:
-        shape = jnp.broadcast_shapes(amplitude.shape, junction.characteristic_voltage.shape)
-        return [jnp.zeros(shape + current.shape, current.dtype)] * 4
+    lanes = common(amplitude=amplitude, frequency=frequency, **junction.parameters())
+    shape = lanes[0].shape + current.shape
+    if 0 in shape:
+        return [jnp.zeros(shape, jnp.result_type(current, lanes[0]))] * 4
     methods = _needed(junction, current, amplitude, frequency)
     return _driven(junction, current, amplitude, frequency, periods, methods)
 
@@ -41,8 +42,7 @@ def _driven(
     periods: int,
     methods: Methods,
 ) -> list[FloatArray]:
-    leaves = [amplitude, frequency, *junction.parameters()]
-    lanes = common(**{str(i): x for i, x in enumerate(leaves)})
+    lanes = common(amplitude=amplitude, frequency=frequency, **junction.parameters())
     dtype = jnp.result_type(current, lanes[0])
     currents = jnp.atleast_1d(current).astype(dtype)
 
@@ -106,8 +106,8 @@ def _checked(drive: Any, junction: JosephsonJunction) -> tuple[FloatArray, Float
     if not isinstance(drive, tuple | list) or len(drive) != 2:
         raise ValueError(f"Argument `drive` must be (amplitude, frequency), but got {drive!r}.")
     amplitude, frequency = aligned(amplitude=drive[0], frequency=drive[1])
-    require("drive", amplitude, "a finite amplitude, in A,", np.isfinite)
-    require("drive", frequency, "a positive frequency, in Hz,", lambda x: (x > 0) & np.isfinite(x))
+    require("drive", amplitude, "a finite amplitude, in A", np.isfinite)
+    require("drive", frequency, "a positive frequency, in Hz", lambda x: (x > 0) & np.isfinite(x))
     unit, volts = concrete(junction.critical_current), concrete(junction.characteristic_voltage)
     size, hertz = concrete(amplitude), concrete(frequency)
     if unit is not None and size is not None and size.size and unit.size:
@@ -133,14 +133,12 @@ def _needed(
     """Which methods its lanes take, as far as can be seen."""
     if junction.capacitance is None:
         return Methods(full=False, sweeps=0)
-    given = [current, amplitude, frequency, *junction.parameters()]
-    if any(concrete(x) is None for x in given):
+    given = {"amplitude": amplitude, "frequency": frequency, **junction.parameters()}
+    if any(concrete(x) is None for x in (current, *given.values())):
         return Methods(full=True, sweeps=MOST_SWEEPS)
-    amplitude, frequency, critical, resistance, beta = common(
-        **{str(i): x for i, x in enumerate(given[1:])}
-    )
+    amplitude, frequency, critical, resistance, beta = common(**given)
     omega = FLUX_QUANTUM * frequency / (critical * resistance * beta)
-    most = jnp.max(jnp.abs(current)) / critical
+    most = jnp.nanmax(jnp.abs(current)) / critical
     lanes = Junction(beta, amplitude / critical, omega)
     slow, delta = glides(lanes, most), smallness(lanes, most)
     largest = float(jnp.max(jnp.where(slow, delta, 0)))

@@ -2,6 +2,7 @@
 
 import jax.numpy as jnp
 import numpy as np
+from jax import lax
 from jaxtyping import Array, Float
 
 FloatArray = Float[Array, "..."]
@@ -24,31 +25,59 @@ def phase_after(tau: FloatArray, s: FloatArray, phase0: FloatArray):
     """φ(s) from φ(0), and φ'.
 
     e^{iφ} obeys a Riccati equation, and φ is twice the argument of ξ = C + S (iτ + e^{−iφ0}) beyond
-    φ0, with C = cosh λs, S = sinh(λs)/2λ, 4λ² = 1 − τ²; φ' = (τ − sin φ0)/|ξ|².  ξ turns about
-    once in every 2π/√(τ² − 1): half turns are counted, and only what is left goes to arctan2.
+    φ0, with C = cosh λs, S = sinh(λs)/2λ, 4λ² = 1 − τ²; φ' = (τ − sin φ0)/|ξ|².  With a voltage
+    ξ turns about once in every 2π/√(τ² − 1): half turns are counted, and only what is left goes to
+    arctan2.
     """
     square = (1 - tau) * (1 + tau)
     q = square * (0.5 * s) ** 2  # (λs)²
-    small, relaxing = jnp.abs(q) < 0.1, q > 0
-    near, above, below = small, ~small & ~relaxing, ~small & relaxing
+    near, relaxing = jnp.abs(q) < 0.1, q > 0
+    above, below = ~near & ~relaxing, ~near & relaxing
 
     # Each with numbers of its own where it is not asked.
     x = jnp.where(near, q, 0)
-    c_near, s_near = (0.5 * _series(x, first) for first in (0, 1))
-    root = jnp.sqrt(jnp.where(near, 1, jnp.abs(square)))
+    root = jnp.sqrt(jnp.where(above, -square, 1))
     angle = jnp.where(above, 0.5 * root * s, 0)
     half_turns = jnp.round(angle / np.pi)
     angle = angle - half_turns * np.pi
-    y = jnp.where(below, 0.5 * root * s, 0)
-    # Both over cosh λs, as they grow like it.
-    real = jnp.where(near, 2 * c_near, jnp.where(above, jnp.cos(angle), 1))
-    slope = jnp.where(near, s_near * s, jnp.where(above, jnp.sin(angle), jnp.tanh(y)) / root)
-    scale = 1 / jnp.cosh(jnp.clip(y, -350, 350))
-
+    real = jnp.where(near, _series(x, 0), jnp.cos(angle))
+    slope = jnp.where(near, 0.5 * _series(x, 1) * s, jnp.sin(angle) / root)
     start = tau - jnp.sin(phase0)
     a, b = real + slope * jnp.cos(phase0), slope * start
     turned = jnp.arctan2(b, a) + jnp.sign(tau) * np.pi * half_turns
-    return phase0 + 2 * turned, start * (scale / jnp.hypot(a, b)) ** 2
+    phase, rate = phase0 + 2 * turned, start / (a * a + b * b)
+
+    settling = _settling(jnp.where(below, tau, 0), jnp.where(below, s, 1), phase0)
+    return tuple(jnp.where(below, x, y) for x, y in zip(settling, (phase, rate), strict=True))
+
+
+def _settling(tau: FloatArray, s: FloatArray, phase0: FloatArray):
+    """The same without a voltage, for all times: φ leaves π − α, and comes to α = arcsin τ.
+
+    With p, q = (φ0 ± α)/2 and e = exp(−√(1 − τ²) |s|), e^{iφ/2} is along
+
+        cos p e^{iα/2} + e i sin q e^{−iα/2},
+
+    or, for s < 0, with e at the other term: no difference of what is nearly alike.
+    """
+    alpha, root = jnp.arcsin(tau), jnp.sqrt((1 - tau) * (1 + tau))
+    p, q = 0.5 * (phase0 + alpha), 0.5 * (phase0 - alpha)
+    # Smaller ones make no difference, and their squares would not be numbers.
+    longest = -0.4 * float(np.log(jnp.finfo(s.dtype).tiny))
+    e = jnp.exp(-jnp.minimum(root * jnp.abs(s), longest))
+    stable = jnp.cos(p) * jnp.where(s > 0, 1, e)
+    unstable = jnp.sin(q) * jnp.where(s > 0, e, 1)
+    c, d = jnp.cos(0.5 * alpha), jnp.sin(0.5 * alpha)
+    real, imaginary = stable * c + unstable * d, stable * d + unstable * c
+    phase = 2 * jnp.arctan2(imaginary, real)
+    # Up to whole turns of e^{iφ/2}, of which φ0 says how many.
+    turned = jnp.arctan2(
+        imaginary * jnp.cos(0.5 * phase0) - real * jnp.sin(0.5 * phase0),
+        real * jnp.cos(0.5 * phase0) + imaginary * jnp.sin(0.5 * phase0),
+    )
+    turns = jnp.round((phase0 + 2 * turned - phase) / (4 * np.pi))
+    rate = -2 * jnp.cos(p) * jnp.sin(q) * root * root * (e / (real * real + imaginary * imaginary))
+    return phase + 4 * np.pi * lax.stop_gradient(turns), rate
 
 
 def _series(q: FloatArray, first: int) -> FloatArray:

@@ -56,15 +56,18 @@ def iv_curve(
     voltage follows exactly from a single period, up and down alike.  With a capacitance the
     current goes through its values in the order of the sweep, and the junction goes on from where
     it was; at the first current it starts at rest, or with V = R I where |I| > Ic.
-    Once it repeats itself from period to period it is locked, and the voltage exact; elsewhere
-    it is averaged over `periods`, after perturbations have decayed.
+    Once it repeats itself from period to period, or in two, three or four of them, it is locked,
+    and the voltage exact; elsewhere it is averaged over `periods`, after perturbations have
+    decayed.
 
     **Raises:** `ValueError` for currents that are neither rising nor falling, and for
     orders of magnitude that only a wrong unit explains: currents beyond 1000 Ic or all below
     Ic/100, frequencies with h f/2e below 1e-4 Ic R (where the voltage is the average of the curve
     without a drive along a period) or above 1e4 Ic R.  Under a transformation currents are
     not checked, and frequencies out of range, infinities, and parameters that are not positive
-    give NaN.
+    give NaN.  NaN, too, is what takes too long: a period of more than 2 million steps, some
+    (|I| + A + Ic)/Ic > 4e5 (h f/2e)/(Ic R), and perturbations that take more than a million
+    periods to decay.
 
     **Accuracy:** without a drive 1e-13 of |V| + Σ |x ∂V/∂x| over the current, Ic, R and C, which
     is 1e-13 relative but next to Ir.  Differentiable in all of these, in every mode
@@ -80,16 +83,17 @@ def iv_curve(
             f"Argument `current` must have one axis at most, but got shape {current.shape}."
         )
     _require_sweep(current, junction)
+    periods = whole("periods", periods, 16)
     if drive is None:
         return _autonomous(junction, current)
-    return IVCurve(current, *driven(junction, current, drive, whole("periods", periods, 16)))
+    return IVCurve(current, *driven(junction, current, drive, periods))
 
 
 @jax.jit
 def _autonomous(junction: JosephsonJunction, current: FloatArray) -> IVCurve:
-    leaves = common(**{str(i): x for i, x in enumerate(junction.parameters())})
+    lanes = common(**junction.parameters())
     # The current behind the axes of the lanes.
-    behind = {str(i): x.reshape(x.shape + (1,) * current.ndim) for i, x in enumerate(leaves)}
+    behind = {str(i): x.reshape(x.shape + (1,) * current.ndim) for i, x in enumerate(lanes)}
     return IVCurve(current, *widened(_branches)(*common(current=current, **behind)))
 
 

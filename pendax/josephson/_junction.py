@@ -172,7 +172,7 @@ class JosephsonJunction(eqx.Module):
         shape = lanes[0].shape
         behind = {str(i): x.reshape(shape + (1,) * ts.ndim) for i, x in enumerate(lanes)}
         ts, unit, ohms, i, phase0 = aligned(ts=ts, **behind)
-        volts = unit * ohms
+        volts = unit * ohms * positive(unit, ohms)
         phase, rate = phase_after(i / unit, volts * (ts * (1 / REDUCED)), phase0)
         return Evolution(ts.reshape(ts.shape[len(shape) :]), phase, volts * rate)
 
@@ -181,10 +181,10 @@ class JosephsonJunction(eqx.Module):
             raise ValueError("A junction without `capacitance` is no pendulum.")
         return self.characteristic_voltage * self.damping
 
-    def parameters(self) -> list[FloatArray]:
+    def parameters(self) -> dict[str, FloatArray]:
         """Ic, R and, with a capacitance, β."""
-        beta = [] if self.capacitance is None else [self.damping]
-        return [self.critical_current, self.resistance, *beta]
+        given = {"critical_current": self.critical_current, "resistance": self.resistance}
+        return given if self.capacitance is None else given | {"damping": self.damping}
 
     def _leaves(self) -> list:
         """Of one rank and dtype."""
@@ -195,10 +195,10 @@ class JosephsonJunction(eqx.Module):
 
 
 def positive(*arrays: FloatArray) -> FloatArray:
-    """A factor 1, or NaN where one of them isn't positive."""
+    """A factor 1, or NaN where one of them isn't positive, or is infinite."""
     factor = jnp.ones_like(arrays[0])
     for x in arrays:
-        factor = jnp.where(x > 0, factor, jnp.nan)
+        factor = jnp.where((x > 0) & (x < jnp.inf), factor, jnp.nan)
     return factor
 
 

@@ -49,10 +49,11 @@ def rotation_number(i0: Scalar, i1: Scalar, omega: Scalar) -> tuple[Scalar, Scal
     turns = jnp.round((argument - lax.stop_gradient(angle)) / (2 * np.pi))
     rho = jnp.where(locked, jnp.round(argument / np.pi) + 0.0, 2 * turns + angle / np.pi)
     eps = jnp.finfo(real.dtype).eps
-    off = 4 * eps * size * jnp.sqrt(steps)
-    beyond = jnp.where(locked, jnp.abs(half_trace) - 1 > off, False)
-    near = jnp.minimum(off / jnp.maximum(sine, off), jnp.sqrt(2 * off)) / np.pi
-    error = lax.stop_gradient(jnp.where(beyond, 0, near) + 4 * eps * jnp.abs(rho))
+    off = 16 * eps * size * jnp.sqrt(steps)
+    at_edge = jnp.sqrt(2 * off)
+    beside = jnp.where(jnp.abs(half_trace) - 1 > off, 0, at_edge)
+    near = jnp.where(locked, beside, jnp.minimum(off / jnp.maximum(sine, off), at_edge)) / np.pi
+    error = lax.stop_gradient(near + 4 * eps * jnp.abs(rho))
     return jnp.where(fine, rho, jnp.nan), jnp.where(fine, error, jnp.nan)
 
 
