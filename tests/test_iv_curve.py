@@ -21,20 +21,21 @@ HERTZ = 0.37 * IC * R / FLUX_QUANTUM
 def test_voltages_of_the_table(shared):
     with (shared / "truth" / "mean_velocity.csv").open() as file:
         rows = [[float(row[x]) for x in ("beta", "tau", "mean_v")] for row in csv.DictReader(file)]
-    for beta in {row[0] for row in rows}:
-        tau, v = np.array([row[1:] for row in rows if row[0] == beta]).T
-        order = np.argsort(tau)
+    beta, tau, v = np.array(rows).T
+
+    @jax.vmap
+    def curves(beta, tau):
         junction = of_beta_c(beta**-2)
-        curve = iv_curve(junction, tau[order] * IC)
-        true = IC * R * beta * v[order]
-        # How much the roundings of τ and β count next to the retrapping current.
-        slack = np.where(tau[order] < 1.01 * float(retrapping_torque(beta)), 1e-9, 1e-11)
-        assert (np.abs(curve.voltage_down / true - 1) < slack).all()
-        up = np.where(tau[order] > 1, true, 0)
-        np.testing.assert_allclose(curve.voltage_up, up, rtol=1e-9)
-        back = iv_curve(junction, -tau[order] * IC)
-        np.testing.assert_allclose(back.voltage_up, -curve.voltage_down, rtol=1e-12)
-        np.testing.assert_allclose(back.voltage_down, -curve.voltage_up, rtol=1e-12)
+        return iv_curve(junction, tau * IC), iv_curve(junction, -tau * IC)
+
+    curve, back = curves(beta, tau)
+    true = IC * R * beta * v
+    # How much the roundings of τ and β count next to the retrapping current.
+    near = tau < 1.01 * retrapping_torque(beta)
+    assert (np.abs(curve.voltage_down / true - 1) < np.where(near, 1e-9, 1e-11)).all()
+    np.testing.assert_allclose(curve.voltage_up, np.where(tau > 1, true, 0), rtol=1e-9)
+    np.testing.assert_allclose(back.voltage_up, -curve.voltage_down, rtol=1e-12)
+    np.testing.assert_allclose(back.voltage_down, -curve.voltage_up, rtol=1e-12)
 
 
 @pytest.mark.parametrize("beta_c", [0.1, 1.0, 10.0, 100.0])
