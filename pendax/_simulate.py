@@ -111,7 +111,7 @@ def simulate(
     Of a solver: within 50 × tolerance × (1 + max|y|) (1 + κ), κ what perturbations grow by
     ([`condition`][]) and the tolerance the larger of the two; 4.4 instead of 50 was the most
     in random scenes by Taylor's method.  Of averaging: below the error that it states, wherever
-    that was checked, for β down to 1e-8: at t = 5/β some 1e-9 to 1e-7 rad where 1e-8 to 5e-6 are
+    that was checked, for β down to 1e-8: at t = 5/β some 1e-9 to 1e-7 rad where 1e-8 to 6e-6 are
     stated, and both large for a start at the top, which magnifies a rounding of θ0.
 
     Suzuki & Suzuki §2.3, §3.1; with a solver §5, §7, §8.

@@ -304,6 +304,7 @@ def test_lanes():
         (lambda: iv_curve(RSJ, np.linspace(0, 300e-9, 9)), "stays below 0.00267 of"),
         (lambda: iv_curve(RSJ, np.ones((2, 2)) * IC), "one axis at most"),
         (lambda: iv_curve(RSJ, IC, drive=(IC,)), r"\(amplitude, frequency\)"),
+        (lambda: iv_curve(RSJ, IC, drive=(np.float16(0), np.float16(1))), "float32 or float64"),
         (lambda: iv_curve(RSJ, IC, drive=(IC, 0.0)), "a positive frequency, in Hz"),
         (lambda: iv_curve(RSJ, IC, drive=(IC, 10.0)), "frequency in Hz, with steps"),
         (lambda: iv_curve(RSJ, IC, drive=(100.0, 1e10)), "amplitude in A"),

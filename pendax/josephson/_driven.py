@@ -26,9 +26,11 @@ def driven(
     """Voltages on the way up and down, and their uncertainties; currents behind the lanes."""
     amplitude, frequency = _checked(drive, junction)
     lanes = common(amplitude=amplitude, frequency=frequency, **junction.parameters())
-    shape = lanes[0].shape + current.shape
+    shape, dtype = lanes[0].shape + current.shape, jnp.result_type(current, lanes[0])
+    if dtype in (jnp.float16, jnp.bfloat16):
+        raise ValueError(f"Arguments must be float32 or float64 for a drive, but got {dtype}.")
     if 0 in shape:
-        return [jnp.zeros(shape, jnp.result_type(current, lanes[0]))] * 4
+        return [jnp.zeros(shape, dtype)] * 4
     methods = _needed(junction, current, amplitude, frequency)
     return _driven(junction, current, amplitude, frequency, periods, methods)
 
@@ -70,7 +72,8 @@ def _driven(
 
 
 def _up_and_down(junction: Junction, i0: FloatArray, periods: int, methods: Methods):
-    falling = i0[0] > i0[-1]
+    known = ~jnp.isnan(i0)
+    falling = i0[jnp.argmax(known)] > i0[::-1][jnp.argmax(known[::-1])]
     rising = jnp.where(falling, i0[::-1], i0)
     ways = jnp.stack([rising, rising[::-1]])
     mean, error, _ = _without_slopes(junction, ways, periods, methods)
