@@ -173,6 +173,7 @@ def test_simulated_voltage():
         ((112.5, 8.0), "`critical_current` must be in A"),
         ((1e-6, 8e9), "must be in A and Ω"),
         ((1e-6, 8.0, 0.4), "`capacitance` must be in F"),
+        ((1.0, 10.0), "must be in A and Ω"),
         ((np.ones(2) * 1e-6, np.ones(3)), "broadcast"),
     ],
 )

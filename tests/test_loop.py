@@ -145,4 +145,6 @@ def test_measured_loops(shared, tmp_path, capsys, standard_promotion):
     overdamped = str(folder / "kit_fprakt_JJ3_iv.csv")
     model = ["--critical-current", "116uA", "--resistance", "0.647"]
     assert main(["iv", overdamped, "--out", str(tmp_path / "out"), *model]) == 0
-    assert "rms 2.0" in capsys.readouterr().out
+    printed = capsys.readouterr().out
+    assert "rms 2.0" in printed
+    assert "no hysteresis" in printed

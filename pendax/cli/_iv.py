@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ._error import UserError
-from ._loop import Loop, crossings, read_loop
+from ._loop import Crossings, Loop, crossings, read_loop
 from ._output import output_folder
 from ._quantity import AMPERE, FARAD, OHM, positive
 
@@ -97,23 +97,33 @@ def _voltages(junction: "JosephsonJunction", loop: Loop) -> np.ndarray:
 def _report(path: Path, loop: Loop, junction, model: np.ndarray | None) -> str:
     from .. import retrapping_torque
 
-    found = crossings(loop)
     lines = [
         f"{path}: {loop.current.size} points, {loop.rising.sum()} with rising current, "
         f"I from {_amperes(loop.current.min())} to {_amperes(loop.current.max())}",
-        f"leaves zero voltage at {_both(found.switching)}, "
-        f"returns to it at {_both(found.retrapping)}   (a twentieth of the largest voltage)",
+        _branches(crossings(loop)),
     ]
     if junction is not None and model is not None:
         unit, beta_c = float(junction.critical_current), float(junction.stewart_mccumber)
         ir = unit * float(retrapping_torque(1 / math.sqrt(beta_c))) if beta_c else unit
-        rms = math.sqrt(np.mean((loop.voltage - model) ** 2))
+        off = np.abs(loop.voltage - model)
         lines += [
             f"model: Ic = {_amperes(unit)}, Ir = {_amperes(ir)}, β_c = {beta_c:.5g}, "
-            f"Ic R = {1e3 * float(junction.characteristic_voltage):.5g} mV; "
-            f"measured − model: rms {1e6 * rms:.4g} µV"
+            f"Ic R = {1e3 * float(junction.characteristic_voltage):.5g} mV",
+            f"measured − model: rms {1e6 * math.sqrt(np.mean(off**2)):.4g} µV, "
+            f"half of the points within {1e6 * np.median(off):.4g} µV",
         ]
     return "\n".join(lines)
+
+
+def _branches(found: Crossings) -> str:
+    both = _both(found.switching), _both(found.retrapping)
+    near = np.abs(np.subtract(found.switching, found.retrapping))
+    if np.all(near < 0.02 * np.abs(found.switching)):
+        return (
+            f"no hysteresis: |V| passes a twentieth of its largest value at {both[0]}, "
+            "and the critical current is below that"
+        )
+    return f"leaves zero voltage at {both[0]}, returns to it at {both[1]}"
 
 
 def _amperes(x: float) -> str:
@@ -143,6 +153,6 @@ def _draw(loop: Loop, junction: "JosephsonJunction | None", path: Path) -> None:
         ax = plot.measured_loop(figure.subplots(), loop.current, loop.voltage, loop.rising)
         if junction is not None:
             ends = np.min(loop.current), np.max(loop.current)
-            plot.iv_curve(ax, iv_curve(junction, np.linspace(*ends, 2001)))
+            plot.iv_curve(ax, iv_curve(junction, np.linspace(*ends, 2001)), label="model")
         ax.legend(loc="upper left")
         figure.savefig(path)

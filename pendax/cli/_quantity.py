@@ -38,7 +38,7 @@ def positive(names: tuple[str, ...]) -> Callable[[str], float]:
             value = math.nan
         if not 0 < value < math.inf:
             raise argparse.ArgumentTypeError(
-                f"expected a positive number in {names[0]}, or with a unit as 2.5u{names[0]}, "
+                f"expected a positive number in {names[0]}, or with a unit as 2.5m{names[0]}, "
                 f"but got {text!r}"
             )
         return value

@@ -58,7 +58,7 @@ class JosephsonJunction(eqx.Module):
     Arrays are junctions side by side; their shapes broadcast.
 
     **Raises:** `ValueError` for what is not positive, and for what no superconductor has but a
-    wrong unit gives: Ic > 10 A, Ic R > 10 V (a gap is below 0.1 V), C > 1 µF.  Under a
+    wrong unit gives: Ic > 10 A, Ic R > 1 V (a gap is below 0.1 V), C > 1 µF.  Under a
     transformation what is not positive gives NaN in its own lane.
     """
 
@@ -129,6 +129,7 @@ class JosephsonJunction(eqx.Module):
                 _relative, as_pytree(current), self.plasma_frequency, self.critical_current
             )
             return Pendulum(1.0, self.damping, torque)
+        require_amperes(current, self)
         unit, i = aligned(critical_current=self.critical_current, current=current)
         return Pendulum(1.0, self.damping, i / unit)
 
@@ -152,7 +153,8 @@ class JosephsonJunction(eqx.Module):
         between them are one analytic function.
 
         **Raises:** `ValueError` for a junction with capacitance, whose motion is that of
-        [`simulate`][]`(junction.pendulum(current), plasma_frequency * ts, …)`.
+        [`simulate`][]`(junction.pendulum(current), plasma_frequency * ts, …)`; for currents beyond
+        1000 Ic, which are no amperes.
 
         **Accuracy:** some eps of |f| + Σ |x ∂f/∂x|.  φ is twice the argument of
         cosh λs + (iτ + e^(−iφ0)) sinh(λs)/2λ, 4λ² = 1 − τ², s = 2e Ic R t/ħ; V is its derivative.
@@ -160,8 +162,10 @@ class JosephsonJunction(eqx.Module):
         if self.capacitance is not None:
             raise ValueError(
                 "A junction with `capacitance` has no closed form: follow it by "
-                "simulate(junction.pendulum(current), junction.plasma_frequency * ts, v0)."
+                "simulate(junction.pendulum(current), junction.plasma_frequency * ts, v0); its "
+                "voltage is junction.voltage(run.v)."
             )
+        require_amperes(current, self)
         (ts,) = common(ts=ts)
         lanes = common(
             critical_current=self.critical_current,
@@ -207,6 +211,20 @@ def require_junction(junction: object) -> None:
         raise ValueError(
             f"Argument `junction` must be a JosephsonJunction, but got {type(junction).__name__}."
         )
+    junction._leaves()  # numbers, and of shapes that broadcast
+
+
+def require_amperes(current: object, junction: JosephsonJunction) -> None:
+    """ValueError for currents that are so large, in units of Ic, that they can't be in A."""
+    seen, unit = concrete(current), concrete(junction.critical_current)
+    if seen is None or unit is None or not np.issubdtype(seen.dtype, np.number):
+        return
+    known, unit = np.abs(seen[np.isfinite(seen)]), unit[unit > 0]
+    if known.size and unit.size and known.max() > 1000 * unit.min():
+        raise ValueError(
+            "Argument `current` must be in A, as the junction's `critical_current`, but it reaches "
+            f"{known.max() / unit.min():.3g} times that."
+        )
 
 
 def _require_si(critical_current, resistance, capacitance) -> None:
@@ -216,10 +234,10 @@ def _require_si(critical_current, resistance, capacitance) -> None:
     current, ohms = concrete(critical_current), concrete(resistance)
     if current is not None and ohms is not None:
         volts = np.max(np.asarray(current * ohms, float), initial=0.0)
-        if volts > 10:
+        if volts > 1:
             raise ValueError(
                 "Arguments `critical_current` and `resistance` must be in A and Ω, with a product "
-                f"of 10 V at most (superconductors stay below 0.1 V), but got {volts:.6g} V."
+                f"of 1 V at most (superconductors stay below 0.1 V), but got {volts:.6g} V."
             )
 
 
