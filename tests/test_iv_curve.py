@@ -53,6 +53,8 @@ def test_branches():
     """Switching at Ic, retrapping at Ir, to the last digits; no hysteresis below β_c = 1/β*²."""
     junction = of_beta_c(25.0)
     ir = float(retrapping_torque(junction.damping)) * IC
+    assert junction.retrapping_current == ir
+    assert RSJ.retrapping_current == IC
     np.testing.assert_allclose(ir, 4 * IC / (np.pi * 5), rtol=0.01)
     current = np.array([-1.01, -1.0, -0.9, -ir / IC * (1 - 1e-12), 0, ir / IC * (1 + 1e-12), 1.0])
     current = np.append(current, [1 + 1e-12, 1.5]) * IC

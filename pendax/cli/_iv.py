@@ -95,20 +95,18 @@ def _voltages(junction: "JosephsonJunction", loop: Loop) -> np.ndarray:
 
 
 def _report(path: Path, loop: Loop, junction, model: np.ndarray | None) -> str:
-    from .. import retrapping_torque
-
     lines = [
         f"{path}: {loop.current.size} points, {loop.rising.sum()} with rising current, "
         f"I from {_amperes(loop.current.min())} to {_amperes(loop.current.max())}",
         _branches(crossings(loop)),
     ]
     if junction is not None and model is not None:
-        unit, beta_c = float(junction.critical_current), float(junction.stewart_mccumber)
-        ir = unit * float(retrapping_torque(1 / math.sqrt(beta_c))) if beta_c else unit
+        unit, ir = float(junction.critical_current), float(junction.retrapping_current)
+        beta_c, volts = float(junction.stewart_mccumber), float(junction.characteristic_voltage)
         off = np.abs(loop.voltage - model)
         lines += [
             f"model: Ic = {_amperes(unit)}, Ir = {_amperes(ir)}, β_c = {beta_c:.5g}, "
-            f"Ic R = {1e3 * float(junction.characteristic_voltage):.5g} mV",
+            f"Ic R = {1e3 * volts:.5g} mV",
             f"measured − model: rms {1e6 * math.sqrt(np.mean(off**2)):.4g} µV, "
             f"half of the points within {1e6 * np.median(off):.4g} µV",
         ]

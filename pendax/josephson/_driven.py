@@ -114,7 +114,7 @@ def _checked(drive: Any, junction: JosephsonJunction) -> tuple[FloatArray, Float
     unit, volts = concrete(junction.critical_current), concrete(junction.characteristic_voltage)
     size, hertz = concrete(amplitude), concrete(frequency)
     if unit is not None and size is not None and size.size and unit.size:
-        share = np.max(np.abs(size)) / np.min(unit)
+        share = np.max(np.abs(size)) / np.max(unit)
         if share > 1000:
             raise ValueError(
                 "Argument `drive` must have its amplitude in A, as the junction's "

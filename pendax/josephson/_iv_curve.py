@@ -40,7 +40,7 @@ def iv_curve(
 
     Without a drive these are the two branches of a loop from beyond −Ic to beyond Ic and
     back, whatever part of it `current` shows: on the way up the voltage is 0 from −Ir to Ic, on the
-    way down from Ir to −Ic, with Ir = Ic τ_r(β) the retrapping current
+    way down from Ir to −Ic, ends included, with Ir = Ic τ_r(β) the retrapping current
     ([`retrapping_torque`][]); elsewhere it is that of the running state
     ([`mean_velocity`][]).  Hysteresis ends where β_c = 1/β*² = 0.7026; near the critical current
     of an overdamped junction, V = R √(I² − Ic²).
@@ -129,7 +129,7 @@ def _require_sweep(current: FloatArray, junction: JosephsonJunction) -> None:
     require_amperes(current, junction)
     if unit is None or unit.size == 0 or known.size < 2 or not np.any(known):
         return
-    share = np.max(np.abs(known)) / np.max(unit)
+    share = np.max(np.abs(known)) / np.min(unit)
     if share < 0.01:
         raise ValueError(
             "Argument `current` must be in A, as the junction's `critical_current`, but it stays "

@@ -10,6 +10,7 @@ from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import NUMBERS, aligned, common, concrete, inexact, require
 from .._pendulum import Pendulum, as_pytree
+from ..fate import retrapping_torque
 from ._first_order import phase_after
 
 FloatArray = Float[Array, "..."]
@@ -110,6 +111,12 @@ class JosephsonJunction(eqx.Module):
         if capacitance is None:
             return jnp.full_like(current, jnp.inf)
         return jnp.sqrt(current * (1 / REDUCED)) * jax.lax.rsqrt(capacitance)
+
+    @property
+    def retrapping_current(self) -> FloatArray:
+        """Ir = Ic τ_r(β), A, where a falling current loses the voltage; Ic without hysteresis."""
+        current, _, capacitance = self._leaves()
+        return current if capacitance is None else current * retrapping_torque(self.damping)
 
     def pendulum(self, current: ArrayLike | Callable) -> Pendulum:
         """The scene ε = 1, β = 1/√β_c, τ = I/Ic, whose time is ω_p t.
@@ -220,10 +227,10 @@ def require_amperes(current: object, junction: JosephsonJunction) -> None:
     if seen is None or unit is None or not np.issubdtype(seen.dtype, np.number):
         return
     known, unit = np.abs(seen[np.isfinite(seen)]), unit[unit > 0]
-    if known.size and unit.size and known.max() > 1000 * unit.min():
+    if known.size and unit.size and known.max() > 1000 * unit.max():
         raise ValueError(
             "Argument `current` must be in A, as the junction's `critical_current`, but it reaches "
-            f"{known.max() / unit.min():.3g} times that."
+            f"{known.max() / unit.max():.3g} times that."
         )
 
 
