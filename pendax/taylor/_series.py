@@ -52,8 +52,8 @@ class Sine(NamedTuple):
 
 
 def largest(tau: Any) -> Any:
-    """The most that |τ| can be."""
-    return jnp.abs(tau.mean) + jnp.abs(tau.amplitude) if isinstance(tau, Sine) else jnp.abs(tau)
+    """The most that |τ| can be; of numbers a number, that a method be chosen by it."""
+    return abs(tau.mean) + abs(tau.amplitude) if isinstance(tau, Sine) else abs(tau)
 
 
 def torque_series(tau: Any, unit: Any, order: int) -> list[Any]:
