@@ -15,6 +15,7 @@ class Result(eqx.Enumeration):
     too_many_steps = "The solver took `max_steps` steps and was not at the last time yet."
     too_stiff = "The solver took `max_steps` steps, held small by the damping alone."
     unsettled = "The motion did not come to an end: no damping, a start on a saddle, `max_steps`."
+    misfit = "It converged where the model does not describe the data: another start might."
     solver_failed = "The solver gave up: its step became too small, or a number infinite."
 
 

@@ -4,3 +4,4 @@ from ._cycles import Cycles as Cycles
 from ._cycles import cycles as cycles
 from ._fit import Fit as Fit
 from ._frequency import fit_frequency as fit_frequency
+from ._trajectory import fit_trajectory as fit_trajectory

@@ -1,0 +1,119 @@
+"""A recorded motion: what is wrong with it, and the state that it seems to start in."""
+
+from typing import NamedTuple
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, Bool, Float
+
+from ._thin_qr import reduced, substituted
+from ._turns import turning_points
+
+Samples = Float[Array, "runs samples"]
+
+
+class Recording(NamedTuple):
+    """Runs side by side; where `there` is False, neither times nor values mean anything.
+
+    `weight` and `velocity_weight` are 1 over the standard errors, or 1; 0 where nothing is there.
+    """
+
+    ts: Samples
+    theta: Samples
+    weight: Samples
+    there: Bool[Array, "runs samples"]
+    velocity: Samples | None
+    velocity_weight: Samples | None
+
+
+def start_of(
+    recording: Recording, epsilon: Float[Array, ""]
+) -> tuple[Float[Array, " runs"], Float[Array, " runs"]]:
+    """θ0 and v0 of each run: a parabola through its first samples, a radian of √ε t of them."""
+    first = recording.ts[:, :1]
+    elapsed = recording.ts - first
+    fifth = elapsed[:, min(4, elapsed.shape[1] - 1)]
+    reach = jnp.maximum(1 / jnp.sqrt(epsilon), fifth)[:, None]
+    t = elapsed / reach
+    weight = jnp.where(recording.there & (t <= 1), recording.weight, 0)
+    powers = jnp.stack([jnp.ones_like(t), t, t * t], -1) * weight[..., None]
+    # A trace of a prior, for runs of fewer than three samples.
+    prior = jnp.broadcast_to(1e-6 * jnp.eye(3, dtype=t.dtype), (t.shape[0], 3, 3))
+    values = jnp.where(weight > 0, recording.theta, 0) * weight
+    rows = jnp.concatenate([powers, prior * jnp.max(weight)], 1)
+    right = jnp.pad(values, ((0, 0), (0, 3)))
+    found = jax.vmap(lambda a, b: substituted(*reduced(a, b)))(rows, right)
+    v0 = found[:, 1] / reach[:, 0]
+    if recording.velocity is not None:
+        first = jnp.argmax(recording.there, axis=1)[:, None]
+        v0 = jnp.take_along_axis(recording.velocity, first, 1)[:, 0]
+    return found[:, 0], v0
+
+
+def require_recording(
+    ts: np.ndarray, theta: np.ndarray, velocity: np.ndarray | None, mask: np.ndarray,
+    driven: bool, unwrap: bool,
+) -> None:
+    """ValueError for what can't be fitted, or is not what it is taken for."""
+    for name, x in (("ts", ts), ("theta", theta), ("velocity", velocity)):
+        if x is None:
+            continue
+        bad = mask & ~np.isfinite(x)
+        if (bad == mask).all():
+            raise ValueError(f"Argument `{name}` must be finite, but none of its samples is.")
+        if bad.any():
+            where = tuple(int(i[0]) for i in np.nonzero(bad))
+            where = where[1] if bad.shape[0] == 1 else where
+            raise ValueError(
+                f"Argument `{name}` must be finite, but got {x[bad][0]} at {where}; "
+                "leave such samples out, or give a `mask` that is False there."
+            )
+    for t, x, there in zip(ts, theta, mask, strict=True):
+        t, x = t[there], x[there]
+        if t.size < 2:
+            raise ValueError(
+                "Argument `mask` must leave two or more samples of each run, "
+                f"but got {t.size} of one."
+            )
+        back = np.flatnonzero(np.diff(t) <= 0)
+        if back.size:
+            i = back[0]
+            raise ValueError(f"Argument `ts` must increase, but got {t[i + 1]} after {t[i]}.")
+        if np.ptp(x) == 0:
+            raise ValueError(
+                f"Argument `theta` must move, but it is {x[0]:.6g} at all times of a run."
+            )
+        _require_radians(x, driven)
+        if not unwrap:
+            _require_unwrapped(t, x)
+
+
+def _require_radians(x: np.ndarray, driven: bool) -> None:
+    """Nothing that a constant torque drives swings through more than 2π and back again."""
+    turns = np.diff(x[turning_points(x, 0.1)])
+    back_and_forth = turns.size > 1 and min(-turns.min(), turns.max()) > 2 * np.pi
+    # Whatever a measured torque does, it doesn't do it 10 turns at a time.
+    if back_and_forth and (not driven or min(-turns.min(), turns.max()) > 20 * np.pi):
+        raise ValueError(
+            "Argument `theta` must be in radians, but it swings through "
+            f"{turns.max():.4g} and back through {-turns.min():.4g}, which no pendulum does: "
+            "degrees? Pass numpy.radians(theta)."
+        )
+
+
+def _require_unwrapped(t: np.ndarray, x: np.ndarray) -> None:
+    steps = np.diff(x)
+    for turn, unit in ((2 * np.pi, "radians"), (360.0, "degrees")):
+        jumps = np.abs(np.abs(steps) - turn) < 0.25 * turn
+        # Samples next to each other, and a jump that its neighbours know nothing of.
+        near = np.diff(t) < 2.5 * np.median(np.diff(t))
+        quiet = np.median(np.abs(steps)) < 0.2 * turn
+        inside = np.ptp(x) < 1.05 * turn
+        if quiet and inside and (jumps & near).any():
+            i = int(np.flatnonzero(jumps & near)[0])
+            raise ValueError(
+                f"Argument `theta` must not be wrapped, but it jumps from {x[i]:.4g} to "
+                f"{x[i + 1]:.4g} in {unit} between two samples: pass `unwrap=True` if these are "
+                "rotations." + (" Convert it to radians first." if unit == "degrees" else "")
+            )

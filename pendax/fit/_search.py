@@ -1,0 +1,166 @@
+"""The search for the parameters of a recorded motion, over longer and longer stretches of it."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Float
+
+from .._method import Method, TaylorSeries
+from .._motion import motion
+from .._pendulum import Pendulum
+from ._judgement import Goodness, Judgement, goodness, judged
+from ._minimise import by_optimiser, least_squares
+from ._parameters import Parameters
+from ._recording import Recording
+
+Vector = Float[Array, " parameters"]
+SPREAD = 0.3  # of further starts
+SMOOTH = 1e-3  # standardised residuals below which a loss is its parabola
+
+
+class Found(NamedTuple):
+    values: Vector
+    history: Float[Array, " steps"]
+    judgement: Judgement
+    goodness: Goodness
+    theta: Float[Array, "runs samples"]
+    velocity: Float[Array, "runs samples"]
+    loss: Float[Array, ""]
+    unexplained: Float[Array, ""]
+
+
+class Search(eqx.Module):
+    """A recording and what is to be found in it; `held` has what is not fitted, by name."""
+
+    recording: Recording
+    scene: Pendulum
+    held: dict[str, Array]
+    parameters: Parameters
+    ends: Float[Array, " stages"]
+    method: Method | None
+    loss: Callable | None = eqx.field(static=True)
+    optimiser: Any = eqx.field(static=True)
+    starts: int = eqx.field(static=True)
+    steps: int = eqx.field(static=True)
+    weighted: bool = eqx.field(static=True)
+
+    @eqx.filter_jit
+    def run(self) -> Found:
+        x = jnp.zeros(self.parameters.size, self.recording.ts.dtype)
+        if self.starts == 1:
+            return self._one(x)
+        key = jax.random.key(0)
+        others = SPREAD * jax.random.normal(key, (self.starts - 1, x.size), x.dtype)
+        found = jax.vmap(self._one)(jnp.concatenate([x[None], others]))
+        best = jnp.argmin(jnp.where(jnp.isfinite(found.loss), found.loss, jnp.inf))
+        return jax.tree.map(lambda leaf: leaf[best], found)
+
+    def _one(self, x: Vector) -> Found:
+        data, full = self.recording, self.ends[-1]
+        ratio = jnp.ones((), x.dtype)
+
+        def stage(at, end):
+            x, ratio = at
+
+            def residuals(x):
+                r = self._residuals(self.parameters.at(x), end, ratio)
+                return r if self.loss is None else _rooted(self.loss, r)
+
+            minimum = least_squares(residuals, x, self.steps)
+            x = jnp.where(jnp.isfinite(minimum.x), minimum.x, x)
+            if data.velocity is not None and not self.weighted:
+                ratio = self._ratio(self.parameters.at(x), end, ratio)
+            return (x, ratio), minimum.history
+
+        (x, ratio), history = lax.scan(stage, (x, ratio), self.ends)
+        history = history[-1]
+
+        def loss(x):
+            r = self._residuals(self.parameters.at(x), full, ratio)
+            return jnp.sum(0.5 * r * r if self.loss is None else jax.vmap(self.loss)(r))
+
+        if self.optimiser is not None:
+            x, history = by_optimiser(loss, x, self.optimiser, self.steps)
+        values = self.parameters.at(x)
+
+        def residuals(values):
+            r = self._residuals(values, full, ratio)
+            return r, r
+
+        jacobian, r = jax.jacfwd(residuals, has_aux=True)(values)
+        channels = 1 if data.velocity is None else 2
+        there = jnp.tile(data.there, (channels, 1))
+        count = jnp.sum(there).astype(r.dtype)
+        theta, velocity = self._model(values, full)
+        spread = _centred(jnp.where(data.there, data.theta, 0), data.weight)
+        of_theta = r[: data.theta.size]
+        return Found(
+            values,
+            history,
+            judged(r, jacobian, count, values, self.loss),
+            goodness(r.reshape(there.shape), there, values.size, self.weighted),
+            theta,
+            velocity,
+            loss(x),
+            jnp.sqrt(jnp.sum(of_theta**2) / jnp.sum(spread**2)),
+        )
+
+    def _model(self, values: Vector, end: Float[Array, ""]):
+        """θ, with the offset, and v at the times up to `end`, and there at all later ones."""
+        at = self.held | self.parameters.split(values)
+        names = [name for name in ("epsilon", "beta", "tau") if name in at]
+        scene = eqx.tree_at(
+            lambda p: [getattr(p, name) for name in names], self.scene, [at[name] for name in names]
+        )
+        ts = self.recording.ts
+
+        def one(ts, v0, theta0):
+            if self.method is None:
+                t = ts - ts[0]
+                alike = (jnp.broadcast_to(x, t.shape) for x in (scene.epsilon, v0, theta0))
+                epsilon, v0, theta0 = alike
+                return tuple(motion(epsilon, t, v0, theta0))
+            # Steps that no stretch asks for are not taken.
+            short = isinstance(self.method, TaylorSeries)
+            times = jnp.minimum(ts, end) if short else ts
+            return self.method(scene, times, v0, theta0, ts[0])[:2]
+
+        theta, v = jax.vmap(one)(ts, at["v0"], at["theta0"])
+        return (theta + at["offset"][:, None] if "offset" in at else theta), v
+
+    def _residuals(self, values: Vector, end, ratio) -> Float[Array, " residuals"]:
+        """Weighted; 0 beyond `end` and where nothing was measured."""
+        data = self.recording
+        theta, v = self._model(values, end)
+        used = data.there & (data.ts <= end)
+        parts = [jnp.where(used, (data.theta - theta) * data.weight, 0)]
+        if data.velocity is not None:
+            weight = data.velocity_weight * ratio
+            parts.append(jnp.where(used, (data.velocity - v) * weight, 0))
+        return jnp.concatenate([jnp.ravel(x) for x in parts])
+
+    def _ratio(self, values: Vector, end, ratio):
+        """By which velocities, whose errors nobody stated, scatter as angles do."""
+        theta, v = jnp.split(self._residuals(values, end, ratio) ** 2, 2)
+        least = jnp.finfo(ratio.dtype).tiny
+        more = jnp.sqrt((jnp.sum(theta) + least) / (jnp.sum(v) + least))
+        return jnp.clip(ratio * more, 1e-3, 1e3)
+
+
+def _centred(x, weight):
+    total = jnp.sum(weight**2, 1, keepdims=True)
+    mean = jnp.sum(x * weight**2, 1, keepdims=True) / total
+    return (x - mean) * weight
+
+
+def _rooted(loss: Callable, r: Float[Array, " residuals"]) -> Float[Array, " residuals"]:
+    """r' whose r'²/2 is the loss of r."""
+    small = jnp.abs(r) < SMOOTH
+    far = jnp.where(small, 1, r)
+    stiffness = jax.grad(jax.grad(loss))(jnp.zeros((), r.dtype))
+    share = jnp.where(small, stiffness, 2 * jax.vmap(loss)(far) / (far * far))
+    return r * jnp.sqrt(share)

@@ -1,0 +1,251 @@
+"""The terms of a scene, and how its motion began, from a recording of it."""
+
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, ArrayLike, Float
+
+from .._arrays import common, concrete, floating, require, whole
+from .._method import Method, TaylorSeries, choose
+from .._pendulum import Pendulum
+from ..taylor import Scene, is_overdamped
+from ._fit import Fit
+from ._judgement import ended
+from ._parameters import Parameters
+from ._recording import Recording, require_recording, start_of
+from ._search import Search
+
+TERMS = ("epsilon", "beta", "tau")
+FIRST = 2.0  # radians of √ε t that the first stretch has
+LEAST = 1e-3  # of √ε: a damping to begin with, where the guess is 0
+
+
+def fit_trajectory(
+    ts: ArrayLike,
+    theta: ArrayLike,
+    guess: Pendulum,
+    *,
+    v0: ArrayLike | None = None,
+    theta0: ArrayLike | None = None,
+    fixed: Sequence[str] = (),
+    velocity: ArrayLike | None = None,
+    sigma: ArrayLike | tuple[ArrayLike, ArrayLike] | None = None,
+    mask: ArrayLike | None = None,
+    offset: ArrayLike | None = None,
+    loss: Callable | None = None,
+    optimiser: Any = None,
+    starts: int = 1,
+    steps: int | None = None,
+    unwrap: bool = False,
+) -> Fit:
+    """TODO"""
+    terms = _terms(guess)
+    starts = whole("starts", starts, 1)
+    steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
+    dtype = floating(ts, theta, *terms.values())
+    shape = jnp.shape(theta)
+    recording = _recording(ts, theta, velocity, sigma, mask, callable(guess.tau), unwrap)
+    held, parameters = _parameters(
+        terms, recording, {"v0": v0, "theta0": theta0, "offset": offset}, fixed
+    )
+    _require_enough(mask, recording, parameters)
+    search = Search(
+        recording,
+        guess,
+        held,
+        parameters,
+        _ends(recording, terms["epsilon"]),
+        _method(guess, recording),
+        loss,
+        optimiser,
+        starts,
+        steps,
+        sigma is not None,
+    )
+    found = search.run()
+
+    def shaped(name, x):
+        x = jnp.asarray(x, dtype)
+        return x[0] if name in ("v0", "theta0", "offset") and len(shape) == 1 else x
+
+    values = held | parameters.split(found.values)
+    values = {name: shaped(name, x) for name, x in values.items()}
+    errors = parameters.split(found.judgement.errors)
+    model = Pendulum(**{name: values.get(name, getattr(guess, name)) for name in TERMS})
+    residuals = recording.theta - found.theta
+    speed = None if velocity is None else recording.velocity - found.velocity
+    return Fit(
+        model=model,
+        v0=values["v0"],
+        theta0=values["theta0"],
+        offset=values.get("offset"),
+        errors={name: shaped(name, x) for name, x in errors.items()},
+        covariance=found.judgement.covariance.astype(dtype),
+        residuals=residuals.reshape(shape).astype(dtype),
+        history=found.history.astype(dtype),
+        result=ended(found.judgement, found.loss, found.goodness.runs, found.unexplained),
+        reduced_chi2=found.goodness.reduced_chi2.astype(dtype),
+        runs=found.goodness.runs.astype(dtype),
+        velocity_residuals=None if speed is None else speed.reshape(shape).astype(dtype),
+    )
+
+
+def _terms(guess: Pendulum) -> dict[str, Float[Array, ""]]:
+    """The terms that are numbers, of the default precision."""
+    if not isinstance(guess, Pendulum):
+        raise ValueError(f"Argument `guess` must be a Pendulum, but got {type(guess).__name__}.")
+    terms = {name: getattr(guess, name) for name in TERMS}
+    terms = {name: x for name, x in terms.items() if x is not None and not callable(x)}
+    for name, x in terms.items():
+        if jnp.ndim(x):
+            raise ValueError(
+                f"Argument `guess` must have numbers, but its {name} has shape {jnp.shape(x)}: "
+                "jax.vmap fits many."
+            )
+    return {name: jnp.asarray(x, floating(1.0)) for name, x in terms.items()}
+
+
+def _recording(ts, theta, velocity, sigma, mask, driven, unwrap) -> Recording:
+    """Checked where its values can be seen, one run a row."""
+    of_theta, of_velocity = sigma if isinstance(sigma, tuple) else (sigma, None)
+    for x in (of_theta, of_velocity):
+        require("sigma", x, "positive", lambda x: x > 0)
+    if (velocity is not None and sigma is not None) != (of_velocity is not None):
+        raise ValueError(
+            "Argument `sigma` must be a pair, of `theta` and of `velocity`, where both are fitted, "
+            "and one where `theta` is alone."
+        )
+    shape = jnp.shape(theta)
+    if len(shape) not in (1, 2) or 0 in shape:
+        raise ValueError(
+            f"Argument `theta` must have one axis of samples, or two, runs first, but got {shape}."
+        )
+    given = {"ts": ts, "theta": theta, "velocity": velocity}
+    for name, x in given.items():
+        if x is not None and jnp.shape(x) not in (shape, shape[-1:]):
+            raise ValueError(f"Argument `{name}` must have shape {shape}, but got {jnp.shape(x)}.")
+    there = jnp.ones(shape, bool) if mask is None else jnp.asarray(mask)
+    if there.dtype != bool or there.shape != shape:
+        raise ValueError(
+            f"Argument `mask` must be booleans of shape {shape}, but got {there.dtype} {there.shape}."
+        )
+
+    def rows(x):
+        x = jnp.asarray(common(x=x)[0], floating(1.0))
+        return jnp.broadcast_to(x, shape).reshape(-1, shape[-1])
+
+    ts, theta = rows(ts), rows(theta)
+    velocity = None if velocity is None else rows(velocity)
+    there = there.reshape(theta.shape)
+    seen = [concrete(x) for x in (ts, theta, there)]
+    if all(x is not None for x in seen):
+        speeds = None if velocity is None else concrete(velocity)
+        require_recording(seen[0], seen[1], speeds, seen[2], driven, unwrap)
+    if unwrap:
+        theta = _unwrapped(theta, there)
+    one = jnp.ones_like(theta)
+    weight, speed_weight = (
+        jnp.where(there, one if x is None else 1 / rows(x), 0) for x in (of_theta, of_velocity)
+    )
+    if velocity is None:
+        speed_weight = None
+    return Recording(_filled(ts, there), theta, weight, there, velocity, speed_weight)
+
+
+def _filled(ts, there):
+    """Times that stand still where nothing was measured: the next is no earlier."""
+    first = jnp.min(jnp.where(there, ts, jnp.inf), axis=1, keepdims=True)
+    known = jnp.where(there, ts, -jnp.inf)
+    return jnp.maximum(jax.lax.cummax(known, axis=1), first)
+
+
+def _unwrapped(theta, there):
+    """Along the samples that are there."""
+    order = jnp.argsort(~there, axis=1, stable=True)
+    dense = jnp.take_along_axis(jnp.where(there, theta, 0), order, 1)
+    back = jnp.argsort(order, axis=1, stable=True)
+    return jnp.where(there, jnp.take_along_axis(jnp.unwrap(dense, axis=1), back, 1), theta)
+
+
+def _parameters(terms, recording: Recording, states, fixed) -> tuple[dict, Parameters]:
+    """What is held, and what is fitted, with the numbers it starts from."""
+    runs, dtype = recording.theta.shape[0], recording.theta.dtype
+    unit = jnp.sqrt(terms["epsilon"])
+    theta0, v0 = start_of(recording, terms["epsilon"])
+    guessed = {"v0": v0, "theta0": theta0}
+    if states["offset"] is not None and states["theta0"] is None:
+        guessed["theta0"] = theta0 - jnp.asarray(states["offset"], dtype)
+    start = dict(terms)
+    for name, x in states.items():
+        if x is None and name == "offset":
+            continue
+        if x is not None and jnp.shape(x) not in ((), (runs,)):
+            raise ValueError(
+                f"Argument `{name}` must be one number, or one a run, but got {jnp.shape(x)}."
+            )
+        x = guessed[name] if x is None else jnp.asarray(common(x=x)[0], dtype)
+        start[name] = jnp.broadcast_to(x, (runs,))
+    for name in fixed:
+        if name not in start:
+            raise ValueError(
+                f"Argument `fixed` must name some of {', '.join(start)}, but got {name!r}."
+            )
+    held = {name: start.pop(name) for name in tuple(start) if name in fixed}
+    if not start:
+        raise ValueError("Argument `fixed` must leave something to fit.")
+    if "beta" in start:
+        start["beta"] = jnp.where(start["beta"] == 0, LEAST * unit, start["beta"])
+    one = jnp.ones((), dtype)
+    scales = {"tau": unit * unit, "v0": unit}
+    scale = {name: scales.get(name, one) for name in start}
+    return held, Parameters(start, scale, frozenset({"epsilon", "beta"} & set(start)), tuple(start))
+
+
+def _require_enough(mask, recording: Recording, parameters: Parameters) -> None:
+    seen = None if mask is None else concrete(mask)
+    if mask is not None and seen is None:
+        return
+    channels = 1 if recording.velocity is None else 2
+    samples = channels * (recording.theta.size if seen is None else int(np.sum(seen)))
+    if samples <= parameters.size:
+        raise ValueError(
+            f"Argument `theta` must have more samples than parameters, {parameters.size} "
+            f"({', '.join(parameters.names)}), but got {samples}."
+        )
+
+
+def _ends(recording: Recording, epsilon) -> Float[Array, " stages"]:
+    """Of stretches each twice as long as the one before, up to all of the recording.
+
+    A phase known over one of them is known well enough over the next to find the right turn.
+    """
+    first = jnp.min(recording.ts[:, 0])
+    span = jnp.max(recording.ts[:, -1] - recording.ts[:, 0])
+    radians = concrete(span * jnp.sqrt(epsilon))
+    if radians is None:
+        stages = int(np.ceil(np.log2(max(2, recording.ts.shape[1] / 8))))
+    else:
+        stages = 1 + int(np.ceil(np.log2(np.clip(float(radians) / FIRST, 1, 2.0**20))))
+    shares = jnp.exp2(jnp.arange(1 - stages, 1, dtype=span.dtype))
+    return first + span * shares
+
+
+def _method(guess: Pendulum, recording: Recording) -> Method | None:
+    """None: the closed form."""
+    if guess.is_free:
+        return None
+    dtype = recording.ts.dtype
+    if callable(guess.tau):
+        names = ("stepsize_controller", "dt0", "adjoint", "rtol", "atol", "max_steps")
+        ts = recording.ts[0]
+        return choose(guess, ts, ts[0], 0.0, dtype, None, dict.fromkeys(names))
+    rtol = float(jnp.finfo(dtype).eps) ** 0.85
+    terms = [concrete(x) for x in (guess.epsilon, guess.beta, guess.tau) if x is not None]
+    stiff = any(x is None for x in terms) or bool(
+        guess.beta is not None
+        and is_overdamped(Scene(*(0.0 if x is None else float(x) for x in (guess.epsilon, guess.beta, guess.tau))))
+    )
+    return TaylorSeries(rtol=rtol, atol=rtol, max_steps=None, stiff=stiff, moving_times=False)
