@@ -61,26 +61,20 @@ class Search(eqx.Module):
 
     def _one(self, x: Vector) -> Found:
         data, full = self.recording, self.ends[-1]
-        ratio = jnp.ones((), x.dtype)
 
-        def stage(at, end):
-            x, ratio = at
-
+        def stage(x, end):
             def residuals(x):
-                r = self._residuals(self.parameters.at(x), end, ratio)
+                r = self._residuals(self.parameters.at(x), end)
                 return r if self.loss is None else _rooted(self.loss, r)
 
             minimum = least_squares(residuals, x, self.steps)
-            x = jnp.where(jnp.isfinite(minimum.x), minimum.x, x)
-            if data.velocity is not None and not self.weighted:
-                ratio = self._ratio(self.parameters.at(x), end, ratio)
-            return (x, ratio), minimum.history
+            return jnp.where(jnp.isfinite(minimum.x), minimum.x, x), minimum.history
 
-        (x, ratio), history = lax.scan(stage, (x, ratio), self.ends)
+        x, history = lax.scan(stage, x, self.ends)
         history = history[-1]
 
         def loss(x):
-            r = self._residuals(self.parameters.at(x), full, ratio)
+            r = self._residuals(self.parameters.at(x), full)
             return jnp.sum(0.5 * r * r if self.loss is None else jax.vmap(self.loss)(r))
 
         if self.optimiser is not None:
@@ -88,7 +82,7 @@ class Search(eqx.Module):
         values = self.parameters.at(x)
 
         def residuals(values):
-            r = self._residuals(values, full, ratio)
+            r = self._residuals(values, full)
             return r, r
 
         jacobian, r = jax.jacfwd(residuals, has_aux=True)(values)
@@ -132,23 +126,15 @@ class Search(eqx.Module):
         theta, v = jax.vmap(one)(ts, at["v0"], at["theta0"])
         return (theta + at["offset"][:, None] if "offset" in at else theta), v
 
-    def _residuals(self, values: Vector, end, ratio) -> Float[Array, " residuals"]:
+    def _residuals(self, values: Vector, end) -> Float[Array, " residuals"]:
         """Weighted; 0 beyond `end` and where nothing was measured."""
         data = self.recording
         theta, v = self._model(values, end)
         used = data.there & (data.ts <= end)
         parts = [jnp.where(used, (data.theta - theta) * data.weight, 0)]
         if data.velocity is not None:
-            weight = data.velocity_weight * ratio
-            parts.append(jnp.where(used, (data.velocity - v) * weight, 0))
+            parts.append(jnp.where(used, (data.velocity - v) * data.velocity_weight, 0))
         return jnp.concatenate([jnp.ravel(x) for x in parts])
-
-    def _ratio(self, values: Vector, end, ratio):
-        """By which velocities, whose errors nobody stated, scatter as angles do."""
-        theta, v = jnp.split(self._residuals(values, end, ratio) ** 2, 2)
-        least = jnp.finfo(ratio.dtype).tiny
-        more = jnp.sqrt((jnp.sum(theta) + least) / (jnp.sum(v) + least))
-        return jnp.clip(ratio * more, 1e-3, 1e3)
 
 
 def _centred(x, weight):

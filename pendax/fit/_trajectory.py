@@ -47,7 +47,7 @@ def fit_trajectory(
     steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
     dtype = floating(ts, theta, *terms.values())
     shape = jnp.shape(theta)
-    recording = _recording(ts, theta, velocity, sigma, mask, callable(guess.tau), unwrap)
+    recording = _recording(ts, theta, velocity, sigma, mask, guess, unwrap)
     held, parameters = _parameters(
         terms, recording, {"v0": v0, "theta0": theta0, "offset": offset}, fixed
     )
@@ -108,12 +108,14 @@ def _terms(guess: Pendulum) -> dict[str, Float[Array, ""]]:
     return {name: jnp.asarray(x, floating(1.0)) for name, x in terms.items()}
 
 
-def _recording(ts, theta, velocity, sigma, mask, driven, unwrap) -> Recording:
+def _recording(ts, theta, velocity, sigma, mask, guess, unwrap) -> Recording:
     """Checked where its values can be seen, one run a row."""
     of_theta, of_velocity = sigma if isinstance(sigma, tuple) else (sigma, None)
+    if sigma is None and velocity is not None:
+        of_velocity = jnp.sqrt(guess.epsilon)
     for x in (of_theta, of_velocity):
         require("sigma", x, "positive", lambda x: x > 0)
-    if (velocity is not None and sigma is not None) != (of_velocity is not None):
+    if (velocity is None) != (of_velocity is None):
         raise ValueError(
             "Argument `sigma` must be a pair, of `theta` and of `velocity`, where both are fitted, "
             "and one where `theta` is alone."
@@ -143,7 +145,7 @@ def _recording(ts, theta, velocity, sigma, mask, driven, unwrap) -> Recording:
     seen = [concrete(x) for x in (ts, theta, there)]
     if all(x is not None for x in seen):
         speeds = None if velocity is None else concrete(velocity)
-        require_recording(seen[0], seen[1], speeds, seen[2], driven, unwrap)
+        require_recording(seen[0], seen[1], speeds, seen[2], callable(guess.tau), unwrap)
     if unwrap:
         theta = _unwrapped(theta, there)
     one = jnp.ones_like(theta)
