@@ -83,6 +83,7 @@ def goodness(
     variance = product * (product - n) / (n * n * jnp.maximum(n - 1, 1))
     changes = jnp.sum(pairs & ((r[:, 1:] > 0) != (r[:, :-1] > 0)), 1) + 1
     runs = jnp.sum(changes.astype(r.dtype) - expected) / jnp.sqrt(jnp.sum(variance))
+    runs = jnp.where(jnp.sum(variance) > 0, runs, -jnp.sqrt(jnp.sum(n)))  # of one sign
 
     mean_square = jnp.sum(jnp.where(there, r * r, 0)) / (jnp.sum(n) - parameters)
     if weighted:

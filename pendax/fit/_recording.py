@@ -90,9 +90,12 @@ def require_recording(
 
 
 def _require_radians(x: np.ndarray, driven: bool) -> None:
-    """Nothing that a constant torque drives swings through more than 2π and back again."""
+    """Nothing that a constant torque drives swings through more than 2π and back again.
+
+    Half a turn more for noise.
+    """
     turns = np.diff(x[turning_points(x, 0.1)])
-    back_and_forth = turns.size > 1 and min(-turns.min(), turns.max()) > 2 * np.pi
+    back_and_forth = turns.size > 1 and min(-turns.min(), turns.max()) > 3 * np.pi
     # Whatever a measured torque does, it doesn't do it 10 turns at a time.
     if back_and_forth and (not driven or min(-turns.min(), turns.max()) > 20 * np.pi):
         raise ValueError(

@@ -19,6 +19,8 @@ from ._recording import Recording
 
 Vector = Float[Array, " parameters"]
 SPREAD = 0.3  # of further starts
+RESERVE = 0.02  # of the data's spread, as one more sample that says x = 0
+ROUGH = 40  # steps on a stretch that is not the last
 SMOOTH = 1e-3  # standardised residuals below which a loss is its parabola
 
 
@@ -61,13 +63,18 @@ class Search(eqx.Module):
 
     def _one(self, x: Vector) -> Found:
         data, full = self.recording, self.ends[-1]
+        spread = _centred(jnp.where(data.there, data.theta, 0), data.weight)
+        reserve = RESERVE * jnp.sqrt(jnp.sum(spread**2) / jnp.sum(data.there))
 
         def stage(x, end):
             def residuals(x):
                 r = self._residuals(self.parameters.at(x), end)
-                return r if self.loss is None else _rooted(self.loss, r)
+                r = r if self.loss is None else _rooted(self.loss, r)
+                # A short stretch may say nothing of a parameter: it then stays where it is.
+                return jnp.concatenate([r, jnp.where(end < full, reserve, 0) * x])
 
-            minimum = least_squares(residuals, x, self.steps)
+            most = jnp.where(end < full, min(ROUGH, self.steps), self.steps)
+            minimum = least_squares(residuals, x, self.steps, most)
             return jnp.where(jnp.isfinite(minimum.x), minimum.x, x), minimum.history
 
         x, history = lax.scan(stage, x, self.ends)
@@ -90,7 +97,6 @@ class Search(eqx.Module):
         there = jnp.tile(data.there, (channels, 1))
         count = jnp.sum(there).astype(r.dtype)
         theta, velocity = self._model(values, full)
-        spread = _centred(jnp.where(data.there, data.theta, 0), data.weight)
         of_theta = r[: data.theta.size]
         return Found(
             values,

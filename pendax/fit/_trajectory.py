@@ -11,7 +11,7 @@ from jaxtyping import Array, ArrayLike, Float
 from .._arrays import common, concrete, floating, require, whole
 from .._method import Method, TaylorSeries, choose
 from .._pendulum import Pendulum
-from ..taylor import Scene, is_overdamped
+from ..taylor import Scene, State, budget, is_overdamped
 from ._fit import Fit
 from ._judgement import ended
 from ._parameters import Parameters
@@ -58,7 +58,7 @@ def fit_trajectory(
         held,
         parameters,
         _ends(recording, terms["epsilon"]),
-        _method(guess, recording),
+        _method(guess, recording, held | parameters.start),
         loss,
         optimiser,
         starts,
@@ -235,19 +235,26 @@ def _ends(recording: Recording, epsilon) -> Float[Array, " stages"]:
     return first + span * shares
 
 
-def _method(guess: Pendulum, recording: Recording) -> Method | None:
-    """None: the closed form."""
+def _method(guess: Pendulum, recording: Recording, start: dict[str, Array]) -> Method | None:
+    """None: the closed form.
+
+    What the search tries on its way may turn over a million times: no more steps are taken than
+    some times those of the guess.
+    """
     if guess.is_free:
         return None
-    dtype = recording.ts.dtype
+    dtype, ts = recording.ts.dtype, recording.ts[0]
+    terms = Scene(*(start.get(name) for name in TERMS))
+    fastest = State(jnp.max(jnp.abs(start["theta0"])), jnp.max(jnp.abs(start["v0"])))
+    most = ts.size + budget(terms, fastest, ts - ts[0]) // 8
     if callable(guess.tau):
         names = ("stepsize_controller", "dt0", "adjoint", "rtol", "atol", "max_steps")
-        ts = recording.ts[0]
-        return choose(guess, ts, ts[0], 0.0, dtype, None, dict.fromkeys(names))
+        seen = concrete(most)
+        options = dict.fromkeys(names) | {"max_steps": 2**17 if seen is None else int(seen)}
+        return choose(guess, ts, ts[0], 0.0, dtype, None, options)
     rtol = float(jnp.finfo(dtype).eps) ** 0.85
-    terms = [concrete(x) for x in (guess.epsilon, guess.beta, guess.tau) if x is not None]
-    stiff = any(x is None for x in terms) or bool(
-        guess.beta is not None
-        and is_overdamped(Scene(*(0.0 if x is None else float(x) for x in (guess.epsilon, guess.beta, guess.tau))))
-    )
-    return TaylorSeries(rtol=rtol, atol=rtol, max_steps=None, stiff=stiff, moving_times=False)
+    # Hidden from sight it is not: of such a scene only the ratios of ε, β and τ can be found.
+    seen = [0.0 if x is None else concrete(x) for x in terms]
+    shown = guess.beta is not None and all(x is not None for x in seen)
+    stiff = shown and bool(is_overdamped(Scene(*seen)))
+    return TaylorSeries(rtol=rtol, atol=rtol, max_steps=most, stiff=stiff, moving_times=False)
