@@ -2,19 +2,18 @@
 
 import math
 import re
-from itertools import pairwise
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
 
+from ..fit import rising
 from ._error import UserError
 from ._quantity import AMPERE, VOLT, factor
 from ._table import column, number, open_table
 
 _CURRENT = re.compile(r"(i|curr|current)([^a-z].*)?$", re.IGNORECASE)
 _VOLTAGE = re.compile(r"([uv]|volt|voltage)([^a-z].*)?$", re.IGNORECASE)
-_TURN = 0.02  # of the range of currents, that a turning point stands out by
 
 
 class Loop(NamedTuple):
@@ -63,51 +62,3 @@ def _unit(path: Path, title: str, unit: str | None, names: tuple[str, ...], opti
             else f"{option}: expected a unit such as m{names[0]}, but got {unit!r}"
         )
     return scale
-
-
-def rising(x: np.ndarray) -> np.ndarray:
-    """Whether x rises, at each value, from turning point to turning point; noise is none."""
-    least = _TURN * np.ptp(x)
-    turns, low, high, way = [0], 0, 0, 0
-    for k, value in enumerate(x):
-        low = k if value < x[low] else low
-        high = k if value > x[high] else high
-        if way <= 0 and value - x[low] > least:
-            turns += [low] if way else []
-            way, high = 1, k
-        elif way >= 0 and x[high] - value > least:
-            turns += [high] if way else []
-            way, low = -1, k
-    ends = [*turns, x.size - 1]
-    up = np.empty(x.size, bool)
-    for first, last in pairwise(ends):
-        up[first : last + 1] = x[last] > x[first]
-    return up
-
-
-class Crossings(NamedTuple):
-    """Currents, A, at which |V| comes to, or falls to, a twentieth of its largest; or NaN."""
-
-    switching: tuple[float, float]  # from zero voltage, for I > 0 and I < 0
-    retrapping: tuple[float, float]
-
-
-def crossings(loop: Loop) -> Crossings:
-    threshold = 0.05 * np.max(np.abs(loop.voltage))
-
-    def at(sign: int, outwards: bool) -> float:
-        # Outwards is rising where the current is positive.
-        branch = (loop.rising == (outwards == (sign > 0))) & (sign * loop.current > 0)
-        size, voltage = sign * loop.current[branch], sign * loop.voltage[branch]
-        order = np.argsort(size, kind="stable")
-        above = voltage[order] > threshold
-        if above.all() or not above.any():
-            return math.nan
-        # As many above it before as below it after: single values are noise.
-        split = np.argmin(np.cumsum(np.where(above, 1, -1)))
-        return sign * float(size[order][min(split + 1, above.size - 1)])
-
-    return Crossings(
-        (at(1, True), at(-1, True)),
-        (at(1, False), at(-1, False)),
-    )

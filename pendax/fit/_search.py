@@ -69,7 +69,7 @@ class Search(eqx.Module):
         def stage(x, end):
             def residuals(x):
                 r = self._residuals(self.parameters.at(x), end)
-                r = r if self.loss is None else _rooted(self.loss, r)
+                r = r if self.loss is None else rooted(self.loss, r)
                 # A short stretch may say nothing of a parameter: it then stays where it is.
                 return jnp.concatenate([r, jnp.where(end < full, reserve, 0) * x])
 
@@ -149,7 +149,7 @@ def _centred(x, weight):
     return (x - mean) * weight
 
 
-def _rooted(loss: Callable, r: Float[Array, " residuals"]) -> Float[Array, " residuals"]:
+def rooted(loss: Callable, r: Float[Array, " residuals"]) -> Float[Array, " residuals"]:
     """r' whose r'²/2 is the loss of r."""
     small = jnp.abs(r) < SMOOTH
     far = jnp.where(small, 1, r)

@@ -99,14 +99,21 @@ def _autonomous(junction: JosephsonJunction, current: FloatArray) -> IVCurve:
     return IVCurve(current, *widened(_branches)(*common(current=current, **behind)))
 
 
-def _branches(current: FloatArray, critical: FloatArray, resistance: FloatArray, *beta: FloatArray):
+def running_voltage(
+    current: FloatArray, critical: FloatArray, resistance: FloatArray, *beta: FloatArray
+) -> FloatArray:
+    """V of the running state, 0 where there is none; arrays of one shape."""
     critical = critical * positive(critical, resistance, *beta)
     if beta:
         v = of_lanes(*(x.ravel() for x in (beta[0], current / critical)))
         running = critical * resistance * (beta[0] * v.reshape(current.shape))
     else:
         running = mean_voltage(current, critical, resistance)
-    running = jnp.where(jnp.isfinite(current), running, jnp.nan)
+    return jnp.where(jnp.isfinite(current), running, jnp.nan)
+
+
+def _branches(current: FloatArray, critical: FloatArray, resistance: FloatArray, *beta: FloatArray):
+    running = running_voltage(current, critical, resistance, *beta)
     # Coming from zero current, it rests up to the critical one.
     rests = jnp.abs(current) <= critical
     up = jnp.where(rests & (current > 0), 0 * running, running)

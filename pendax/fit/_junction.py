@@ -1,0 +1,313 @@
+"""A junction's critical current, resistance and capacitance from a measured I–V loop."""
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any, NamedTuple
+
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import ArrayLike
+
+from .._arrays import concrete, whole
+from ..josephson import REDUCED, JosephsonJunction, iv_curve
+from ._fit import Fit
+from ._judgement import ended, goodness
+from ._loop import LEVEL, Crossings, crossings
+from ._loop import rising as rising_of
+from ._loop_search import Edges, LoopSearch, Outcome, Points
+from ._parameters import Parameters
+
+BINS = 96  # of running points, over which the curve is straight
+NEAR = 0.2  # of the current where the voltage vanishes, within which noise rounds the curve
+DESCRIBED = 0.05  # of the largest voltage, that a point which the model describes may be off
+HYSTERESIS = 0.02  # of the switching current, between it and the retrapping one
+AGAIN = 12  # times at most that points are chosen anew
+
+NAMES = ("critical_current", "resistance", "capacitance", "current_offset")
+
+
+class _Loop(NamedTuple):
+    current: np.ndarray
+    voltage: np.ndarray  # without the offset
+    rising: np.ndarray
+    there: np.ndarray
+
+
+def fit_junction(
+    current: ArrayLike,
+    voltage: ArrayLike,
+    guess: JosephsonJunction | None = None,
+    *,
+    rising: ArrayLike | None = None,
+    fixed: Sequence[str] = (),
+    mask: ArrayLike | None = None,
+    loss: Callable | None = None,
+    optimiser: Any = None,
+    steps: int | None = None,
+) -> Fit:
+    """TODO"""
+    steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
+    loop = _checked(current, voltage, rising, mask)
+    largest = float(np.max(np.abs(loop.voltage[loop.there])))
+    rest = loop.there & (np.abs(loop.voltage) < LEVEL * largest)
+    shift = float(np.median(loop.voltage[rest])) if rest.any() else 0.0
+    loop = loop._replace(voltage=loop.voltage - shift)
+    found = crossings(*(x[loop.there] for x in loop[:3]))
+    hysteretic = _hysteretic(found)
+    notes = []
+    capacitive = hysteretic if guess is None else guess.capacitance is not None and hysteretic
+    if not hysteretic:
+        notes.append(
+            "The loop has no hysteresis and does not determine a capacitance: the first-order "
+            "junction is fitted."
+        )
+    elif not capacitive:
+        notes.append("The loop has hysteresis, which a junction without capacitance has not.")
+
+    points = _points(loop, largest)
+    start = _start(points, found, guess, capacitive)
+    both = (points.current > 0).any() and (points.current < 0).any()
+    held = {name: start.pop(name) for name in tuple(start) if name in fixed}
+    if not both and "current_offset" in start:
+        held["current_offset"] = start.pop("current_offset")
+    parameters = _parameters(start, held, fixed)
+    search = LoopSearch(
+        points,
+        _edges(found) if hysteretic else None,
+        held,
+        parameters,
+        jnp.asarray(largest),
+        loss,
+        optimiser,
+        steps,
+    )
+    outcome, used = _trimmed(search, found, loss is None)
+    return _fit(search, outcome, used, loop, shift, largest, notes)
+
+
+def _checked(current, voltage, rising, mask) -> _Loop:
+    arrays = {"current": current, "voltage": voltage}
+    seen = {name: concrete(x) for name, x in arrays.items()}
+    for name, x in seen.items():
+        if x is None:
+            raise ValueError(
+                f"Argument `{name}` must be numbers, but got {type(arrays[name]).__name__}: what "
+                "is fitted depends on the data, which no transformation may hide."
+            )
+    i, v = (np.asarray(x, float) for x in seen.values())
+    if i.ndim != 1 or i.shape != v.shape:
+        raise ValueError(
+            "Arguments `current` and `voltage` must have one axis of equal length, "
+            f"but got shapes {i.shape} and {v.shape}."
+        )
+    there = np.ones(i.shape, bool) if mask is None else np.asarray(mask)
+    if there.dtype != bool or there.shape != i.shape:
+        raise ValueError(
+            f"Argument `mask` must be booleans of shape {i.shape}, "
+            f"but got {there.dtype} {there.shape}."
+        )
+    if there.sum() < 16:
+        raise ValueError(
+            f"Argument `current` must have 16 or more points that are fitted, got {there.sum()}."
+        )
+    for name, x in (("current", i), ("voltage", v)):
+        bad = there & ~np.isfinite(x)
+        if bad.any():
+            raise ValueError(
+                f"Argument `{name}` must be finite, but got {x[bad][0]} at "
+                f"{int(np.flatnonzero(bad)[0])}; leave such points out, or give a `mask`."
+            )
+        if np.ptp(x[there]) == 0:
+            raise ValueError(f"Argument `{name}` must vary, but it is {x[there][0]:.6g} always.")
+    for name, x, most, unit in (("current", i, 10.0, "A"), ("voltage", v, 1.0, "V")):
+        if np.abs(x[there]).max() > most:
+            raise ValueError(
+                f"Argument `{name}` must be in {unit}, {most:g} at most, "
+                f"but it reaches {np.abs(x[there]).max():.6g}."
+            )
+    up = rising_of(np.where(there, i, np.nanmedian(i))) if rising is None else np.asarray(rising)
+    if up.dtype != bool or up.shape != i.shape:
+        raise ValueError(
+            f"Argument `rising` must be booleans of shape {i.shape}, but got {up.dtype} {up.shape}."
+        )
+    return _Loop(i, v, up, there)
+
+
+def _hysteretic(found: Crossings) -> bool:
+    out, back = np.abs(found.switching), np.abs(found.retrapping)
+    return bool(np.any(out - back > HYSTERESIS * out))
+
+
+def _edges(found: Crossings) -> Edges:
+    """What was measured of both on each side; 1 stands where it wasn't."""
+    both = np.abs([found.switching, found.retrapping])
+    there = np.isfinite(both).all(0)
+    out, back = np.where(there, both, np.nanmean(both[:, there]) if there.any() else 1.0)
+    return Edges(jnp.asarray(out), jnp.asarray(back), jnp.asarray(there, float))
+
+
+def _points(loop: _Loop, largest: float) -> Points:
+    """Running points in the order of their currents, and means of them."""
+    runs = loop.there & (np.abs(loop.voltage) >= LEVEL * largest)
+    i, v = loop.current[runs], loop.voltage[runs]
+    order = np.argsort(i, kind="stable")
+    # No mean reaches from negative currents to positive ones.
+    parts = [p for side in (order[i[order] < 0], order[i[order] > 0])
+             for p in np.array_split(side, min(BINS // 2, side.size)) if p.size]  # fmt: skip
+    sizes = np.array([p.size for p in parts], float)
+    means = (np.array([x[p].mean() for p in parts]) for x in (i, v))
+    return Points(*(jnp.asarray(x) for x in (*means, sizes / sizes.mean())))
+
+
+def _start(points: Points, found: Crossings, guess, capacitive: bool) -> dict[str, float]:
+    """Read off the loop: Ic where it switches, C from where it retraps, R where most points are."""
+    i, v = np.abs(points.current), np.abs(points.voltage)
+    out, back = (float(np.nanmean(np.abs(x))) for x in found)
+    edge = back if capacitive else out
+    beyond = i > edge * (1 + NEAR)
+    ohms = v[beyond] / np.sqrt(i[beyond] ** 2 - edge**2)
+    agree = np.abs(ohms[:, None] - ohms) < 2 * DESCRIBED * ohms
+    resistance = float(np.median(ohms[agree[np.argmax(agree.sum(1))]]))
+    start = {"critical_current": out, "resistance": resistance}
+    if capacitive:
+        beta_c = (4 * out / (math.pi * back)) ** 2
+        start["capacitance"] = beta_c * REDUCED / (out * resistance**2)
+    if guess is not None:
+        leaves = guess.critical_current, guess.resistance, guess.capacitance
+        given = dict(zip(NAMES, leaves, strict=False))
+        start = {name: float(given[name]) for name in start}
+    signs = np.array(found.switching)
+    start["current_offset"] = float(np.mean(signs)) if np.isfinite(signs).all() else 0.0
+    return start
+
+
+def _parameters(start: dict[str, float], held: dict[str, float], fixed) -> Parameters:
+    for name in fixed:
+        if name not in held:
+            raise ValueError(
+                f"Argument `fixed` must name some of {', '.join((*start, *held))}, "
+                f"but got {name!r}."
+            )
+    if not start:
+        raise ValueError("Argument `fixed` must leave something to fit.")
+    unit = 0.1 * (start | held)["critical_current"]
+    scale = {name: jnp.asarray(unit) for name in start}
+    arrays = {name: jnp.asarray(x, float) for name, x in start.items()}
+    positive = frozenset(NAMES[:3]) & set(start)
+    return Parameters(arrays, scale, positive, tuple(start))
+
+
+def _trimmed(search: LoopSearch, found: Crossings, trim: bool) -> tuple[Outcome, np.ndarray]:
+    """Points that the fit describes are fitted again without the others, until they stay the same.
+
+    Neighbouring residuals that are alike count as fewer than they are (Bartlett 1935): what the
+    model lacks must not outweigh the currents of transition.
+    """
+    edge = np.nanmean(np.abs(found.retrapping if search.edges is not None else found.switching))
+    base = np.abs(np.asarray(search.points.current)) > (1 + NEAR) * edge
+    if base.sum() < 4:
+        raise ValueError(
+            "Argument `current` must reach further: only a few points lie beyond the transition "
+            f"at {edge:.4g} A."
+        )
+    used, share, x = base, 1.0, jnp.zeros(search.parameters.size)
+    seen: set[bytes] = set()
+    for _ in range(AGAIN):
+        outcome = search.run(x, jnp.asarray(used), jnp.asarray(share))
+        off = np.asarray(outcome.off)
+        if not np.isfinite(off).all():
+            break
+        again = base & (np.abs(off) < DESCRIBED) if trim else used
+        fewer = _independent(off[used])
+        if (again == used).all() and abs(np.log(fewer / share)) < 0.1 or again.sum() < 4:
+            break
+        if again.tobytes() in seen and not (again == used).all():  # going to and fro
+            again = again & used
+        seen.add(again.tobytes())
+        used, share = again, fewer
+    return outcome, used
+
+
+def _independent(off: np.ndarray) -> float:
+    """Of residuals with lag-one correlation ρ: (1 − ρ)/(1 + ρ) of their number, eight at least."""
+    r = off - off.mean()
+    power = float(r @ r)
+    rho = float(r[1:] @ r[:-1]) / power if power > 0 else 0.0
+    least = min(1.0, 8 / off.size)
+    return float(np.clip((1 - rho) / (1 + rho), least, 1.0))
+
+
+def _fit(search, outcome: Outcome, used, loop: _Loop, shift, largest, notes) -> Fit:
+    parameters = search.parameters
+    values = search.held | parameters.split(parameters.at(outcome.x))
+    leaves = (values[name] for name in NAMES[:2])
+    model = JosephsonJunction(*leaves, values.get("capacitance"))
+    zero = float(values["current_offset"])
+    residuals = loop.voltage - _modelled(model, loop, zero)
+    rms = np.sqrt(np.mean(np.asarray(outcome.off)[used] ** 2)) if used.any() else math.nan
+    points = search.points
+    kept = _kept(loop, points, used)
+    found = goodness(
+        jnp.asarray(residuals)[None], jnp.asarray(kept)[None], parameters.size, False
+    )
+    judgement = outcome.judgement
+    errors = parameters.split(judgement.errors)
+    return Fit(
+        model=model,
+        v0=None,
+        theta0=None,
+        offset=jnp.asarray([zero, shift]),
+        errors=errors,
+        covariance=judgement.covariance,
+        residuals=jnp.asarray(residuals),
+        history=outcome.history,
+        result=ended(judgement, outcome.loss, found.runs, jnp.asarray(rms)),
+        reduced_chi2=found.reduced_chi2,
+        runs=found.runs,
+        notes=(*notes, *_undescribed(loop, residuals, largest)),
+    )
+
+
+def _modelled(model: JosephsonJunction, loop: _Loop, zero: float) -> np.ndarray:
+    """Of the branch that each point was measured on."""
+    current = np.where(np.isfinite(loop.current), loop.current, 0) - zero
+    order = np.argsort(current, kind="stable")
+    curve = iv_curve(model, current[order])
+    voltages = np.empty((2, current.size))
+    voltages[:, order] = curve.voltage_down, curve.voltage_up
+    return np.where(loop.rising, voltages[1], voltages[0])
+
+
+def _kept(loop: _Loop, points: Points, used: np.ndarray) -> np.ndarray:
+    """The measured points that the fitted means are of."""
+    nearest = np.argmin(np.abs(loop.current[:, None] - np.asarray(points.current)), 1)
+    return loop.there & used[nearest] & (loop.voltage * loop.current > 0)
+
+
+def _undescribed(loop: _Loop, residuals: np.ndarray, largest: float) -> list[str]:
+    """Where more than a few neighbours are off, from … to …, in |I| and |V|."""
+    off = loop.there & (np.abs(residuals) > DESCRIBED * largest)
+    share = off.sum() / loop.there.sum()
+    if share < 0.005:
+        return []
+    i, v = np.abs(loop.current), np.abs(loop.voltage)
+    edges = np.linspace(0, i[loop.there].max(), 65)
+    bins = np.clip(np.digitize(i, edges) - 1, 0, 63)
+    wrong = np.array([np.mean(off[k & loop.there]) if (k & loop.there).any() else 0.0
+                      for k in (bins == b for b in range(64))]) > 0.3  # fmt: skip
+    places = []
+    for first, last in _stretches(wrong):
+        inside = off & (bins >= first) & (bins <= last)
+        places.append(
+            f"|I| from {1e6 * i[inside].min():.4g} to {1e6 * i[inside].max():.4g} µA "
+            f"(|V| {1e3 * v[inside].min():.3g} to {1e3 * v[inside].max():.3g} mV)"
+        )
+    return [
+        f"The model is more than {DESCRIBED:.0%} of the largest voltage off at {share:.0%} of the "
+        f"points{': ' if places else ''}{', '.join(places)}."
+    ]
+
+
+def _stretches(flags: np.ndarray) -> list[tuple[int, int]]:
+    ends = np.flatnonzero(np.diff(np.r_[False, flags, False].astype(int)))
+    return [(int(a), int(b) - 1) for a, b in zip(ends[::2], ends[1::2], strict=True)]

@@ -1,0 +1,116 @@
+"""The search for a junction's parameters in its running points and its currents of transition."""
+
+from collections.abc import Callable
+from typing import Any, NamedTuple
+
+import equinox as eqx
+import jax
+import jax.numpy as jnp
+from jaxtyping import Array, Bool, Float
+
+from ..josephson import JosephsonJunction
+from ..josephson._iv_curve import running_voltage
+from ._judgement import Judgement, judged
+from ._minimise import by_optimiser, least_squares
+from ._parameters import Parameters
+from ._search import rooted
+
+SHARP = 2e-3  # of Ic: the error of a switching current that was measured once
+SLOW = 5 * SHARP  # of one of retrapping, which noise and leakage move more
+CLOSE = 0.01  # of the largest voltage: the unit of the residuals
+
+Pair = Float[Array, "2"]
+
+
+class Points(NamedTuple):
+    """Means of neighbouring running points; `weight`: how many there are, over the mean number."""
+
+    current: Float[Array, " bins"]
+    voltage: Float[Array, " bins"]
+    weight: Float[Array, " bins"]
+
+
+class Edges(NamedTuple):
+    """Currents, A, where the voltage appears and where it vanishes; weight 0 where not measured.
+
+    For positive currents and for negative ones, sign left out.
+    """
+
+    switching: Pair
+    retrapping: Pair
+    there: Pair
+
+
+class Outcome(NamedTuple):
+    x: Float[Array, " parameters"]
+    history: Float[Array, " steps"]
+    judgement: Judgement
+    loss: Float[Array, ""]
+    off: Float[Array, " bins"]  # measured less modelled, over the largest voltage
+
+
+class LoopSearch(eqx.Module):
+    """`edges`: of a loop with hysteresis, else `None`; `held` has what is not fitted, by name."""
+
+    points: Points
+    edges: Edges | None
+    held: dict[str, Array]
+    parameters: Parameters
+    largest: Float[Array, ""]
+    loss: Callable | None = eqx.field(static=True)
+    optimiser: Any = eqx.field(static=True)
+    steps: int = eqx.field(static=True)
+
+    @eqx.filter_jit
+    def run(
+        self,
+        x: Float[Array, " parameters"],
+        used: Bool[Array, " bins"],
+        share: Float[Array, ""],
+    ) -> Outcome:
+        """From x on, with the points `used`, that count for `share` of their number."""
+
+        def of_values(values):
+            return self._residuals(values, used, share)
+
+        def residuals(x):
+            r = of_values(self.parameters.at(x))
+            return r if self.loss is None else rooted(self.loss, r)
+
+        def loss(x):
+            r = of_values(self.parameters.at(x))
+            return jnp.sum(0.5 * r * r if self.loss is None else jax.vmap(self.loss)(r))
+
+        found = least_squares(residuals, x, self.steps, jnp.asarray(self.steps, jnp.int32))
+        if self.optimiser is not None:
+            found = by_optimiser(loss, found.x, self.optimiser, self.steps)
+        values = self.parameters.at(found.x)
+        r, jacobian = of_values(values), jax.jacfwd(of_values)(values)
+        count = share * jnp.sum(used)
+        if self.edges is not None:
+            count = count + 2 * jnp.sum(self.edges.there)
+        judgement = judged(r, jacobian, count, values, self.loss)
+        return Outcome(found.x, found.history, judgement, loss(found.x), self._off(values))
+
+    def _junction(self, values) -> tuple[JosephsonJunction, Array]:
+        at = self.held | self.parameters.split(values)
+        leaves = at["critical_current"], at["resistance"], at.get("capacitance")
+        return JosephsonJunction(*leaves), at["current_offset"]
+
+    def _off(self, values):
+        junction, zero = self._junction(values)
+        current = self.points.current - zero
+        leaves = [jnp.broadcast_to(x, current.shape) for x in junction.parameters().values()]
+        return (self.points.voltage - running_voltage(current, *leaves)) / self.largest
+
+    def _residuals(self, values, used, share):
+        off = jnp.where(used, self._off(values), 0)
+        parts = [off * jnp.sqrt(share * self.points.weight) / CLOSE]
+        if self.edges is not None:
+            junction, zero = self._junction(values)
+            unit, sign = junction.critical_current, jnp.asarray([1, -1], zero.dtype)
+            modelled = unit, junction.retrapping_current
+            measured = self.edges.switching, self.edges.retrapping
+            for model, data, error in zip(modelled, measured, (SHARP, SLOW), strict=True):
+                parts.append(self.edges.there * (data - sign * zero - model) / (error * unit))
+        return jnp.concatenate(parts)
