@@ -1,14 +1,17 @@
 """`pendax iv`: a measured I–V loop, its branches, and a model's over it."""
 
 import argparse
+import json
 import math
+from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ..fit import Crossings, crossings
 from ._error import UserError
-from ._loop import Crossings, Loop, crossings, read_loop
+from ._loop import Loop, read_loop
 from ._output import output_folder
 from ._quantity import AMPERE, FARAD, OHM, positive
 
@@ -20,8 +23,11 @@ DESCRIPTION = """\
 Read a measured I–V loop, separate its branches, current rising and falling, and print
 where they leave zero voltage and return to it; write both with a figure.
 
+With --fit, Ic, R and, of a loop with hysteresis, C are fitted and printed with their standard
+errors, and with what the model does not describe.
+
 With --critical-current and --resistance, and --capacitance for a junction with hysteresis,
-the model's curve is drawn over them.  Values are in A, ohm and F, or with a unit of their
+that model's curve is drawn instead.  Values are in A, ohm and F, or with a unit of their
 own: --critical-current 112.5uA --resistance 8 --capacitance 0.4pF."""
 
 
@@ -36,6 +42,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--out", type=Path, default=Path("pendax-out"), metavar="FOLDER",
         help="where the files go (default pendax-out)")  # fmt: skip
     add("--quiet", action="store_true", help="print nothing but errors")
+    add("--fit", action="store_true", help="fit the model to the loop")
     model = parser.add_argument_group("the model")
     add = model.add_argument
     add("--critical-current", type=positive(AMPERE), metavar="IC", help="Ic, A")
@@ -58,12 +65,41 @@ def run(arguments: argparse.Namespace) -> None:
         arguments.current_unit,
         arguments.voltage_unit,
     )
+    if arguments.fit and junction is not None:
+        raise UserError("--fit: expected it without --critical-current, --resistance, --capacitance")
+    names = ["iv.csv", "iv.png"]
     with output_folder(arguments.out) as folder:
-        model = None if junction is None else _voltages(junction, loop)
-        say(_report(arguments.loop, loop, junction, model))
+        say(_report(arguments.loop, loop))
+        if arguments.fit:
+            names.append("iv.json")
+            junction, model = _fitted(loop, arguments, say, folder / names[-1])
+        else:
+            model = None if junction is None else _voltages(junction, loop)
+        if junction is not None and model is not None:
+            say(_comparison(loop, junction, model))
         _write(loop, model, folder / "iv.csv")
-        _draw(loop, junction, folder / "iv.png")
-    say("\nwrote", *(arguments.out / name for name in ("iv.csv", "iv.png")), sep="\n  ")
+        _draw(loop, junction, model, folder / "iv.png")
+    say("\nwrote", *(arguments.out / name for name in names), sep="\n  ")
+
+
+def _fitted(loop: Loop, arguments: argparse.Namespace, say: Callable, path: Path):
+    """The junction and its voltages, offsets included; what is known of them goes to `path`."""
+    from tqdm import tqdm
+
+    from ..fit import fit_junction
+    from ._fit_report import junction_numbers, junction_report
+
+    hidden = True if arguments.quiet else None  # None: hidden unless on a terminal
+    try:
+        with tqdm(total=None, desc="fit", unit=" steps", delay=0.5, disable=hidden) as bar:
+            fit = fit_junction(
+                loop.current, loop.voltage, rising=loop.rising, progress=lambda _: bar.update()
+            )
+    except ValueError as error:
+        raise UserError(f"{arguments.loop}: {error}") from None
+    say(junction_report(fit))
+    path.write_text(json.dumps(junction_numbers(fit), indent=2) + "\n")
+    return fit.model, loop.voltage - np.asarray(fit.residuals)
 
 
 def _junction(arguments: argparse.Namespace) -> "JosephsonJunction | None":
@@ -94,23 +130,24 @@ def _voltages(junction: "JosephsonJunction", loop: Loop) -> np.ndarray:
     return np.where(loop.rising, voltages[1], voltages[0])
 
 
-def _report(path: Path, loop: Loop, junction, model: np.ndarray | None) -> str:
-    lines = [
+def _report(path: Path, loop: Loop) -> str:
+    return (
         f"{path}: {loop.current.size} points, {loop.rising.sum()} with rising current, "
-        f"I from {_amperes(loop.current.min())} to {_amperes(loop.current.max())}",
-        _branches(crossings(loop)),
-    ]
-    if junction is not None and model is not None:
-        unit, ir = float(junction.critical_current), float(junction.retrapping_current)
-        beta_c, volts = float(junction.stewart_mccumber), float(junction.characteristic_voltage)
-        off = np.abs(loop.voltage - model)
-        lines += [
-            f"model: Ic = {_amperes(unit)}, Ir = {_amperes(ir)}, β_c = {beta_c:.5g}, "
-            f"Ic R = {1e3 * volts:.5g} mV",
-            f"measured − model: rms {1e6 * math.sqrt(np.mean(off**2)):.4g} µV, "
-            f"half of the points within {1e6 * np.median(off):.4g} µV",
-        ]
-    return "\n".join(lines)
+        f"I from {_amperes(loop.current.min())} to {_amperes(loop.current.max())}\n"
+        + _branches(crossings(*loop))
+    )
+
+
+def _comparison(loop: Loop, junction: "JosephsonJunction", model: np.ndarray) -> str:
+    unit, ir = float(junction.critical_current), float(junction.retrapping_current)
+    beta_c, volts = float(junction.stewart_mccumber), float(junction.characteristic_voltage)
+    off = np.abs(loop.voltage - model)
+    return (
+        f"model: Ic = {_amperes(unit)}, Ir = {_amperes(ir)}, β_c = {beta_c:.5g}, "
+        f"Ic R = {1e3 * volts:.5g} mV\n"
+        f"measured − model: rms {1e6 * math.sqrt(np.mean(off**2)):.4g} µV, "
+        f"half of the points within {1e6 * np.median(off):.4g} µV"
+    )
 
 
 def _branches(found: Crossings) -> str:
@@ -140,17 +177,25 @@ def _write(loop: Loop, model: np.ndarray | None, path: Path) -> None:
     np.savetxt(path, table, "%.12g", ",", header=",".join(columns), comments="")
 
 
-def _draw(loop: Loop, junction: "JosephsonJunction | None", path: Path) -> None:
+def _draw(loop: Loop, junction, model: np.ndarray | None, path: Path) -> None:
     import matplotlib as mpl
 
     from .. import plot
     from ..josephson import iv_curve
 
     with mpl.rc_context(plot.STYLE):
-        figure = plot.new_figure(7.5, 5.0)
-        ax = plot.measured_loop(figure.subplots(), loop.current, loop.voltage, loop.rising)
+        figure = plot.new_figure(7.5, 5.0 if model is None else 6.5)
+        if model is None:
+            ax = figure.subplots()
+        else:
+            ax, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
+        plot.measured_loop(ax, loop.current, loop.voltage, loop.rising)
         if junction is not None:
             ends = np.min(loop.current), np.max(loop.current)
             plot.iv_curve(ax, iv_curve(junction, np.linspace(*ends, 2001)), label="model")
         ax.legend(loc="upper left")
+        if model is not None:
+            plot.measured_loop(below, loop.current, loop.voltage - model, loop.rising)
+            below.set_ylabel("measured − model\n" + below.get_ylabel().partition(" ")[2])
+            ax.set_xlabel("")
         figure.savefig(path)

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ._error import UserError
+from ._numbers import finite, positive, whole
 from ._output import output_folder
 from ._recording import write_cycles
 
@@ -32,11 +33,11 @@ T(amplitude), and draw the measured points over the exact curve."""
 
 def add_arguments(parser: argparse.ArgumentParser) -> None:
     add = parser.add_argument
-    add("--epsilon", type=_positive, default=1.0, metavar="E",
+    add("--epsilon", type=positive, default=1.0, metavar="E",
         help="ε = g/l of the sweep, 1/s² (default 1)")  # fmt: skip
-    add("--count", type=_count, default=200_000, metavar="N",
+    add("--count", type=whole(100), default=200_000, metavar="N",
         help="initial velocities, before equal ones are dropped (default 200000)")  # fmt: skip
-    add("--window", type=_positive, nargs=2, default=(1e-12, 1e-6), metavar=("LOW", "HIGH"),
+    add("--window", type=positive, nargs=2, default=(1e-12, 1e-6), metavar=("LOW", "HIGH"),
         help="distances t/√ε on which the law is fitted (default 1e-12 1e-6)")  # fmt: skip
     add("--out", type=Path, default=Path("pendax-out"), metavar="FOLDER",
         help="where the files go (default pendax-out)")  # fmt: skip
@@ -51,7 +52,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--time", metavar="NAME", help="time column (default: t…, time…)")
     add("--angle", metavar="NAME", help="angle column (default: theta…_deg, theta…_rad)")
     add("--unit", choices=("deg", "rad"), help="of the angle (default: its name's ending)")
-    add("--start", type=_finite, default=-math.inf, metavar="T",
+    add("--start", type=finite, default=-math.inf, metavar="T",
         help="use the recording from this time on, in its unit")  # fmt: skip
 
 
@@ -174,34 +175,3 @@ def _fit(swept: "Sweep", low: float, high: float) -> "CriticalLaw":
     if not law.result == Result.successful:
         raise UserError(f"--window: the law could not be fitted on {low:g} … {high:g} √ε")
     return law
-
-
-def _positive(text: str) -> float:
-    value = _number(text)
-    if not (0 < value < math.inf):
-        raise argparse.ArgumentTypeError(f"expected a positive number, but got {text}")
-    return value
-
-
-def _count(text: str) -> int:
-    try:
-        value = int(text)
-    except ValueError:
-        value = 0
-    if value < 100:
-        raise argparse.ArgumentTypeError(f"expected a whole number from 100 on, but got {text}")
-    return value
-
-
-def _finite(text: str) -> float:
-    value = _number(text)
-    if not math.isfinite(value):
-        raise argparse.ArgumentTypeError(f"expected a finite number, but got {text}")
-    return value
-
-
-def _number(text: str) -> float:
-    try:
-        return float(text)
-    except ValueError:
-        raise argparse.ArgumentTypeError(f"expected a number, but got {text!r}") from None

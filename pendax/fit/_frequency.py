@@ -10,6 +10,7 @@ from .._pendulum import Pendulum
 from .._results import Result, where
 from ._cycles import Cycles
 from ._fit import Fit
+from ._judgement import goodness
 
 
 def fit_frequency(
@@ -28,7 +29,8 @@ def fit_frequency(
     **Returns:** a [`Fit`][] whose `model` is `Pendulum(epsilon)`, ε = (2π/T0)²; T0 is
     the weighted least-squares value, in closed form because T is linear in it.  The
     standard error comes from the scatter of the residuals, so that only the ratios of
-    `sigma` matter.
+    `sigma` matter; `reduced_chi2` is with respect to them, and says whether the exact law holds
+    within them.  `runs` is in the order of the amplitudes.
 
     **Raises:** `ValueError` for fewer than two cycles, |θ_max| ≥ π, a period or `sigma`
     that is not positive.
@@ -36,8 +38,10 @@ def fit_frequency(
     require("amplitude", amplitude, "below π in size", lambda x: abs(x) < jnp.pi)
     require("period", period, "positive", lambda x: x > 0)
     require("sigma", sigma, "positive", lambda x: x > 0)
-    weights = 1.0 if sigma is None else sigma
-    amplitude, period, sigma = common(amplitude=amplitude, period=period, sigma=weights)
+    weighted = sigma is not None
+    amplitude, period, sigma = common(
+        amplitude=amplitude, period=period, sigma=sigma if weighted else 1.0
+    )
     if amplitude.ndim != 1 or amplitude.size < 2:
         raise ValueError(
             "Argument `amplitude` must have one axis of two or more cycles, "
@@ -53,6 +57,11 @@ def fit_frequency(
 
     epsilon = (2 * jnp.pi / small_angle) ** 2
     error_epsilon = 2 * epsilon * error / small_angle
+    # In the order of the amplitudes: what the law lacks is a function of them.
+    order = jnp.argsort(jnp.abs(amplitude))
+    found = goodness(
+        (residuals / sigma)[None, order], jnp.ones((1, residuals.size), bool), 1, weighted
+    )
     return Fit(
         model=Pendulum(epsilon),
         v0=None,
@@ -63,6 +72,8 @@ def fit_frequency(
         residuals=residuals,
         history=loss[None],
         result=where(jnp.isfinite(epsilon), Result.successful, Result.not_a_number),
+        reduced_chi2=found.reduced_chi2,
+        runs=found.runs,
     )
 
 

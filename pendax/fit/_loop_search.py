@@ -13,7 +13,7 @@ from ..josephson._iv_curve import running_voltage
 from ._judgement import Judgement, judged
 from ._minimise import by_optimiser, least_squares
 from ._parameters import Parameters
-from ._search import rooted
+from ._search import rooted, total
 
 SHARP = 2e-3  # of Ic: the error of a switching current that was measured once
 SLOW = 5 * SHARP  # of one of retrapping, which noise and leakage move more
@@ -71,26 +71,27 @@ class LoopSearch(eqx.Module):
         """From x on, with the points `used`, that count for `share` of their number."""
 
         def of_values(values):
-            return self._residuals(values, used, share)
+            r, off = self._residuals(values, used, share)
+            return r, (r, off)
 
         def residuals(x):
-            r = of_values(self.parameters.at(x))
+            r, _ = of_values(self.parameters.at(x))
             return r if self.loss is None else rooted(self.loss, r)
-
-        def loss(x):
-            r = of_values(self.parameters.at(x))
-            return jnp.sum(0.5 * r * r if self.loss is None else jax.vmap(self.loss)(r))
 
         found = least_squares(residuals, x, self.steps, jnp.asarray(self.steps, jnp.int32))
         if self.optimiser is not None:
+
+            def loss(x):
+                return total(self.loss, of_values(self.parameters.at(x))[0])
+
             found = by_optimiser(loss, found.x, self.optimiser, self.steps)
         values = self.parameters.at(found.x)
-        r, jacobian = of_values(values), jax.jacfwd(of_values)(values)
+        jacobian, (r, off) = jax.jacfwd(of_values, has_aux=True)(values)
         count = share * jnp.sum(used)
         if self.edges is not None:
             count = count + 2 * jnp.sum(self.edges.there)
         judgement = judged(r, jacobian, count, values, self.loss)
-        return Outcome(found.x, found.history, judgement, loss(found.x), self._off(values))
+        return Outcome(found.x, found.history, judgement, total(self.loss, r), off)
 
     def _junction(self, values) -> tuple[JosephsonJunction, Array]:
         at = self.held | self.parameters.split(values)
@@ -104,7 +105,8 @@ class LoopSearch(eqx.Module):
         return (self.points.voltage - running_voltage(current, *leaves)) / self.largest
 
     def _residuals(self, values, used, share):
-        off = jnp.where(used, self._off(values), 0)
+        all_off = self._off(values)
+        off = jnp.where(used, all_off, 0)
         parts = [off * jnp.sqrt(share * self.points.weight) / CLOSE]
         if self.edges is not None:
             junction, zero = self._junction(values)
@@ -113,4 +115,4 @@ class LoopSearch(eqx.Module):
             measured = self.edges.switching, self.edges.retrapping
             for model, data, error in zip(modelled, measured, (SHARP, SLOW), strict=True):
                 parts.append(self.edges.there * (data - sign * zero - model) / (error * unit))
-        return jnp.concatenate(parts)
+        return jnp.concatenate(parts), all_off

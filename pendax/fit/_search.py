@@ -49,6 +49,7 @@ class Search(eqx.Module):
     starts: int = eqx.field(static=True)
     steps: int = eqx.field(static=True)
     weighted: bool = eqx.field(static=True)
+    progress: Callable | None = eqx.field(static=True)
 
     @eqx.filter_jit
     def run(self) -> Found:
@@ -68,35 +69,36 @@ class Search(eqx.Module):
 
         def stage(x, end):
             def residuals(x):
-                r = self._residuals(self.parameters.at(x), end)
+                r, _ = self._residuals(self.parameters.at(x), end)
                 r = r if self.loss is None else rooted(self.loss, r)
                 # A short stretch may say nothing of a parameter: it then stays where it is.
                 return jnp.concatenate([r, jnp.where(end < full, reserve, 0) * x])
 
             most = jnp.where(end < full, min(ROUGH, self.steps), self.steps)
             minimum = least_squares(residuals, x, self.steps, most)
+            if self.progress is not None:
+                jax.debug.callback(self.progress, 1 / self.ends.size)
             return jnp.where(jnp.isfinite(minimum.x), minimum.x, x), minimum.history
 
         x, history = lax.scan(stage, x, self.ends)
         history = history[-1]
 
-        def loss(x):
-            r = self._residuals(self.parameters.at(x), full)
-            return jnp.sum(0.5 * r * r if self.loss is None else jax.vmap(self.loss)(r))
-
         if self.optimiser is not None:
+
+            def loss(x):
+                return total(self.loss, self._residuals(self.parameters.at(x), full)[0])
+
             x, history = by_optimiser(loss, x, self.optimiser, self.steps)
         values = self.parameters.at(x)
 
-        def residuals(values):
-            r = self._residuals(values, full)
-            return r, r
+        def of_values(values):
+            r, motion = self._residuals(values, full)
+            return r, (r, motion)
 
-        jacobian, r = jax.jacfwd(residuals, has_aux=True)(values)
+        jacobian, (r, (theta, velocity)) = jax.jacfwd(of_values, has_aux=True)(values)
         channels = 1 if data.velocity is None else 2
         there = jnp.tile(data.there, (channels, 1))
         count = jnp.sum(there).astype(r.dtype)
-        theta, velocity = self._model(values, full)
         of_theta = r[: data.theta.size]
         return Found(
             values,
@@ -105,7 +107,7 @@ class Search(eqx.Module):
             goodness(r.reshape(there.shape), there, values.size, self.weighted),
             theta,
             velocity,
-            loss(x),
+            total(self.loss, r),
             jnp.sqrt(jnp.sum(of_theta**2) / jnp.sum(spread**2)),
         )
 
@@ -132,15 +134,15 @@ class Search(eqx.Module):
         theta, v = jax.vmap(one)(ts, at["v0"], at["theta0"])
         return (theta + at["offset"][:, None] if "offset" in at else theta), v
 
-    def _residuals(self, values: Vector, end) -> Float[Array, " residuals"]:
-        """Weighted; 0 beyond `end` and where nothing was measured."""
+    def _residuals(self, values: Vector, end):
+        """Weighted; 0 beyond `end` and where nothing was measured.  And the motion."""
         data = self.recording
         theta, v = self._model(values, end)
         used = data.there & (data.ts <= end)
         parts = [jnp.where(used, (data.theta - theta) * data.weight, 0)]
         if data.velocity is not None:
             parts.append(jnp.where(used, (data.velocity - v) * data.velocity_weight, 0))
-        return jnp.concatenate([jnp.ravel(x) for x in parts])
+        return jnp.concatenate([jnp.ravel(x) for x in parts]), (theta, v)
 
 
 def _centred(x, weight):
@@ -156,3 +158,7 @@ def rooted(loss: Callable, r: Float[Array, " residuals"]) -> Float[Array, " resi
     stiffness = jax.grad(jax.grad(loss))(jnp.zeros((), r.dtype))
     share = jnp.where(small, stiffness, 2 * jax.vmap(loss)(far) / (far * far))
     return r * jnp.sqrt(share)
+
+
+def total(loss: Callable | None, r: Float[Array, " residuals"]) -> Float[Array, ""]:
+    return jnp.sum(0.5 * r * r if loss is None else jax.vmap(loss)(r))

@@ -40,8 +40,56 @@ def fit_trajectory(
     starts: int = 1,
     steps: int | None = None,
     unwrap: bool = False,
+    progress: Callable[[float], Any] | None = None,
 ) -> Fit:
-    """TODO"""
+    """The terms of a scene and its initial state, from a recording of its motion.
+
+    Weighted least squares by Levenberg–Marquardt, on a stretch of two radians of √ε t first, then
+    on stretches that double up to all of the recording: over many turns a phase has a minimum at
+    every one of them, and what is known from one stretch tells the right one of the next.  The
+    motion is that of [`simulate`][]: the closed form without damping and torque, Taylor's method
+    for constant ones, diffrax for a torque that is a function of time.
+
+    **Arguments:**
+
+    - `ts`, `theta`: times, s, increasing, and angles, rad, not wrapped, one axis of samples; the
+      initial state holds at the first time.  Several runs of one pendulum are a leading axis of
+      `theta` (and of `ts`, unless they share it): v0, θ0 and offset are then each run's own.
+    - `guess`: the scene to start from.  Terms that it has are fitted, those that are `None` stay
+      out, and a τ that is a function of time is held.  ε, and β, may be some tens of percent off;
+      a β of 0 starts from 1e-3 √ε.
+    - `v0`, `theta0`: where the initial state starts from, rad/s and rad, one number or one a run.
+      `None`: a parabola through the first samples.
+    - `fixed`: names among epsilon, beta, tau, v0, theta0, offset that are held where they start.
+    - `velocity`: measured θ̇, rad/s, fitted together with `theta`.
+    - `sigma`: standard errors of the angles, rad, a number or one a sample; with `velocity` a pair,
+      that of angles and that of velocities.  Their ratios are the weights, and `reduced_chi2` is
+      with respect to them.  `None`: equal weights, velocities in units of √ε.
+    - `mask`: `False` where nothing was measured, of the shape of `theta`.  Neither angles nor times
+      count there.  Gaps in time need none.
+    - `offset`: of the angle, rad, to start from: `theta` is then fitted by θ(t) + offset.
+      `None`: no such parameter.
+    - `loss`: ρ(r) of a standardised residual, a smooth function like r²/2 near 0, such as
+      `lambda r: jnp.log1p(r * r / 2)` against outliers; in units of `sigma`, so give it.
+    - `optimiser`: one of optax's, which takes `steps` of Σ ρ from where Levenberg–Marquardt
+      ended.
+    - `starts`: so many starts side by side, the guess and others around it, some 30 % off; the best
+      one is returned.
+    - `steps`: at most, by default 100 (2000 of an `optimiser`), 40 on a stretch before the last.
+    - `unwrap`: whether jumps of more than π between samples are whole turns.
+    - `progress`: called with the share of the work that has been done since the last call.
+
+    **Returns:** a [`Fit`][], scalars, or one value a run, in `v0`, `theta0` and `offset`.  Under
+    `jax.vmap` many fits are one program.
+
+    **Raises:** `ValueError` for samples that are not finite, constant angles, times that don't
+    increase, no more samples than parameters, angles that can only be degrees, wrapped ones, and
+    names that are not fitted.  Under a transformation data are not looked at; NaN among them
+    gives a `result` other than *successful*.
+
+    **Accuracy:** the minimum to 1e-4 of the standard errors, or to rounding where there is no
+    noise; `result` is *not converged* where it may be 1e-3 of them off.
+    """
     terms = _terms(guess)
     starts = whole("starts", starts, 1)
     steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
@@ -64,6 +112,7 @@ def fit_trajectory(
         starts,
         steps,
         sigma is not None,
+        progress,
     )
     found = search.run()
 

@@ -2,6 +2,8 @@
 
 from ._critical import critical_approach as critical_approach
 from ._critical import law_deviation as law_deviation
+from ._fit import recorded_motion as recorded_motion
+from ._fit import residuals as residuals
 from ._frequency import frequency_curve as frequency_curve
 from ._frequency import measured_cycles as measured_cycles
 from ._iv_curve import iv_curve as iv_curve
