@@ -9,7 +9,7 @@
     its expansions   period_series, small_angle, critical_law, fit_critical_law
     its geometry     geometry
     the junction     JosephsonJunction, iv_curve, FLUX_QUANTUM
-    data             cycles, fit_frequency
+    data             cycles, fit_frequency, fit_trajectory, fit_junction
     elsewhere        pendax.special, pendax.solvers, pendax.plot, pendax.figures
 
 Angles are in radians; `help` of each name has the rest.
@@ -57,6 +57,8 @@ from .fit import Cycles as Cycles
 from .fit import Fit as Fit
 from .fit import cycles as cycles
 from .fit import fit_frequency as fit_frequency
+from .fit import fit_junction as fit_junction
+from .fit import fit_trajectory as fit_trajectory
 from .josephson import FLUX_QUANTUM as FLUX_QUANTUM
 from .josephson import Evolution as Evolution
 from .josephson import IVCurve as IVCurve

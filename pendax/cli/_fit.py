@@ -50,7 +50,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
     add("--torque", action="store_true", help="a constant torque τ")
     add("--offset", action="store_true", help="an offset of the angle")
     add("--sigma", type=positive, metavar="S",
-        help="standard error of the angles, in their unit (default: from their scatter)")  # fmt: skip
+        help="standard error of the angles, in their unit (default: by their scatter)")  # fmt: skip
     add("--starts", type=whole(1), default=1, metavar="N",
         help="starts around the first, the best of which is taken (default 1)")  # fmt: skip
 

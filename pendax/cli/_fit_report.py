@@ -48,8 +48,12 @@ def junction_report(fit: Fit) -> str:
     """Ic, R, C and what follows from them, then how well they describe the loop."""
     junction = fit.model
     values, errors = _junction_values(fit), fit.errors
-    units = {"critical_current": ("Ic", 1e6, "µA"), "resistance": ("R", 1.0, "Ω"),
-             "capacitance": ("C", 1e12, "pF"), "current_offset": ("I offset", 1e6, "µA")}  # fmt: skip
+    units = {
+        "critical_current": ("Ic", 1e6, "µA"),
+        "resistance": ("R", 1.0, "Ω"),
+        "capacitance": ("C", 1e12, "pF"),
+        "current_offset": ("I offset", 1e6, "µA"),
+    }
     rows = []
     for name, error in errors.items():
         letter, scale, unit = units[name]

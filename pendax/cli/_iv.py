@@ -66,7 +66,7 @@ def run(arguments: argparse.Namespace) -> None:
         arguments.voltage_unit,
     )
     if arguments.fit and junction is not None:
-        raise UserError("--fit: expected it without --critical-current, --resistance, --capacitance")
+        raise UserError("--fit: expected it without a model of your own")
     names = ["iv.csv", "iv.png"]
     with output_folder(arguments.out) as folder:
         say(_report(arguments.loop, loop))

@@ -1,6 +1,5 @@
 """A measured I–V loop from a CSV file, and its branches."""
 
-import math
 import re
 from pathlib import Path
 from typing import NamedTuple

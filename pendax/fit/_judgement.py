@@ -44,7 +44,7 @@ def judged(
         stiffness = jnp.sum(jnp.where(there, curvature, 0)) / count
     # Units apart, that R be as well conditioned as it can.
     norms = jnp.sqrt(jnp.sum(jacobian**2, axis=0))
-    found = reduced(jacobian / norms, pull)
+    found = reduced(jacobian / norms[None, :], pull)
     inverse = substituted(found.r, jnp.eye(size, dtype=norms.dtype)) / norms[:, None]
     scatter = jnp.sum(pull**2) / freedom / stiffness**2
     covariance = scatter * (inverse @ inverse.T)

@@ -269,7 +269,7 @@ def _trimmed(
             break
         again = base & (np.abs(off) < DESCRIBED) if trim else used
         fewer = _independent(off[used])
-        if (again == used).all() and abs(np.log(fewer / share)) < 0.1 or again.sum() < 4:
+        if ((again == used).all() and abs(np.log(fewer / share)) < 0.1) or again.sum() < 4:
             break
         if again.tobytes() in seen and not (again == used).all():  # going to and fro
             again = again & used
@@ -297,9 +297,7 @@ def _fit(search, outcome: Outcome, used, loop: _Loop, shift, largest, notes) -> 
     rms = np.sqrt(np.mean(np.asarray(outcome.off)[used] ** 2)) if used.any() else math.nan
     points = search.points
     kept = _kept(loop, points, used)
-    found = goodness(
-        jnp.asarray(residuals)[None], jnp.asarray(kept)[None], parameters.size, False
-    )
+    found = goodness(jnp.asarray(residuals)[None], jnp.asarray(kept)[None], parameters.size, False)
     judgement = outcome.judgement
     errors = parameters.split(judgement.errors)
     return Fit(

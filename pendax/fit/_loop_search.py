@@ -78,7 +78,7 @@ class LoopSearch(eqx.Module):
             r, _ = of_values(self.parameters.at(x))
             return r if self.loss is None else rooted(self.loss, r)
 
-        found = least_squares(residuals, x, self.steps, jnp.asarray(self.steps, jnp.int32))
+        found = least_squares(residuals, x, self.steps, jnp.asarray(self.steps))
         if self.optimiser is not None:
 
             def loss(x):

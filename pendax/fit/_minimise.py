@@ -32,7 +32,7 @@ def least_squares(
     """
     import optimistix as optx
 
-    from ._thin_qr import ThinQR
+    from ._linear_solver import ThinQR
 
     # Half as many digits again as the loss can show.
     small = float(jnp.finfo(x.dtype).eps) ** 0.75
@@ -64,11 +64,11 @@ def least_squares(
         here = state.f_info.residual
         there = here + state.f_info.jac.mv(state.y_eval - x)
         loss, promised = 0.5 * jnp.sum(here**2), 0.5 * jnp.sum(there**2)
-        history = jnp.where(jnp.arange(steps) < count, history, loss)
+        history = jnp.where(jnp.arange(steps, dtype=count.dtype) < count, history, loss)
         done = done | nowhere | (loss - promised < ENOUGH * loss)
         return x, eqx.filter(state, eqx.is_array), history, count + 1, done
 
-    start = jnp.zeros(steps, x.dtype), jnp.zeros((), jnp.int32), jnp.zeros((), bool)
+    start = jnp.zeros(steps, x.dtype), jnp.zeros_like(most), jnp.zeros((), bool)
     x, _, history, _, _ = lax.while_loop(unfinished, step, (x, moving, *start))
     return Minimum(x, history)
 
@@ -84,9 +84,11 @@ def by_optimiser(
     def step(at, _):
         x, state = at
         value, slope = jax.value_and_grad(loss)(x)
-        change, state = optimiser.update(
-            slope, state, x, value=value, grad=slope, value_fn=loss
-        )
+        # Not all of optax's mind their dtypes.
+        with jax.numpy_dtype_promotion("standard"), jax.numpy_rank_promotion("allow"):
+            change, state = optimiser.update(
+                slope, state, x, value=value, grad=slope, value_fn=loss
+            )
         return (optax.apply_updates(x, change), state), value
 
     (x, _), history = lax.scan(step, (x, optimiser.init(x)), length=steps)

@@ -52,8 +52,12 @@ def start_of(
 
 
 def require_recording(
-    ts: np.ndarray, theta: np.ndarray, velocity: np.ndarray | None, mask: np.ndarray,
-    driven: bool, unwrap: bool,
+    ts: np.ndarray,
+    theta: np.ndarray,
+    velocity: np.ndarray | None,
+    mask: np.ndarray,
+    driven: bool,
+    unwrap: bool,
 ) -> None:
     """ValueError for what can't be fitted, or is not what it is taken for."""
     for name, x in (("ts", ts), ("theta", theta), ("velocity", velocity)):

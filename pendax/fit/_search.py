@@ -65,14 +65,17 @@ class Search(eqx.Module):
     def _one(self, x: Vector) -> Found:
         data, full = self.recording, self.ends[-1]
         spread = _centred(jnp.where(data.there, data.theta, 0), data.weight)
-        reserve = RESERVE * jnp.sqrt(jnp.sum(spread**2) / jnp.sum(data.there))
+        samples = jnp.sum(data.there).astype(x.dtype)
+        reserve = RESERVE * jnp.sqrt(jnp.sum(spread**2) / samples)
 
-        def stage(x, end):
+        def stage(x, at):
+            end, reserve = at
+
             def residuals(x):
                 r, _ = self._residuals(self.parameters.at(x), end)
                 r = r if self.loss is None else rooted(self.loss, r)
                 # A short stretch may say nothing of a parameter: it then stays where it is.
-                return jnp.concatenate([r, jnp.where(end < full, reserve, 0) * x])
+                return jnp.concatenate([r, reserve * x])
 
             most = jnp.where(end < full, min(ROUGH, self.steps), self.steps)
             minimum = least_squares(residuals, x, self.steps, most)
@@ -80,7 +83,9 @@ class Search(eqx.Module):
                 jax.debug.callback(self.progress, 1 / self.ends.size)
             return jnp.where(jnp.isfinite(minimum.x), minimum.x, x), minimum.history
 
-        x, history = lax.scan(stage, x, self.ends)
+        # Less and less of it: where the fit ends up it would pull it off.
+        reserves = jnp.where(self.ends < full, reserve * 0.1 ** jnp.arange(self.ends.size, dtype=x.dtype), 0)
+        x, history = lax.scan(stage, x, (self.ends, reserves))
         history = history[-1]
 
         if self.optimiser is not None:

@@ -1,12 +1,13 @@
-"""Linear least squares with few unknowns, in plain JAX."""
+"""Linear least squares with few unknowns, in plain JAX.
 
-from typing import Any, NamedTuple
+The rejected form is `jnp.linalg.qr`: LAPACK's batched calls inside a loop can lock up the threads
+of XLA's CPU backend, and plain arithmetic batches well.
+"""
 
-import jax
+from typing import NamedTuple
+
 import jax.numpy as jnp
-import lineax as lx
 from jax import lax
-from jax.flatten_util import ravel_pytree
 from jaxtyping import Array, Float
 
 Matrix = Float[Array, "rows columns"]
@@ -49,32 +50,3 @@ def substituted(r: Square, y: Float[Array, "columns ..."]) -> Float[Array, "colu
         return x.at[k].set((y[k] - jnp.tensordot(r[k], x, 1)) / r[k, k])
 
     return lax.fori_loop(0, n, step, jnp.zeros_like(y))
-
-
-class ThinQR(lx.AbstractLinearSolver):
-    """min ‖A x − b‖ for a handful of unknowns, of independent columns.
-
-    The rejected form is lineax's `QR`: LAPACK's batched calls inside a loop can lock up the
-    threads of XLA's CPU backend, and plain arithmetic batches well.
-    """
-
-    def init(self, operator: lx.AbstractLinearOperator, options: dict[str, Any]):
-        del options
-        unknowns = jax.tree.map(lambda x: jnp.zeros(x.shape, x.dtype), operator.in_structure())
-        return operator.as_matrix(), unknowns
-
-    def compute(self, state, vector, options: dict[str, Any]):
-        del options
-        matrix, unknowns = state
-        found = reduced(matrix, ravel_pytree(vector)[0])
-        _, unravel = ravel_pytree(unknowns)
-        return unravel(substituted(*found)), lx.RESULTS.successful, {}
-
-    def transpose(self, state, options: dict[str, Any]):
-        raise NotImplementedError
-
-    def conj(self, state, options: dict[str, Any]):
-        return state, options
-
-    def assume_full_rank(self) -> bool:
-        return True

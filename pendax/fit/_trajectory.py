@@ -181,7 +181,8 @@ def _recording(ts, theta, velocity, sigma, mask, guess, unwrap) -> Recording:
     there = jnp.ones(shape, bool) if mask is None else jnp.asarray(mask)
     if there.dtype != bool or there.shape != shape:
         raise ValueError(
-            f"Argument `mask` must be booleans of shape {shape}, but got {there.dtype} {there.shape}."
+            f"Argument `mask` must be booleans of shape {shape}, but got {there.dtype} of shape "
+            f"{there.shape}."
         )
 
     def rows(x):
