@@ -178,7 +178,7 @@ def test_output_into_a_file_or_after_a_failure(tmp_path, capsys):
 
 def test_recording_columns_units_and_start(tmp_path):
     path = swing_file(tmp_path, "n,clock,phi", ["0,1.0,90", "1,2.0,180", "", "2,3.5,-90"])
-    ts, theta, unit = read_recording(path, "clock", "phi", "deg", start=1.5)
+    ts, theta, unit, *_ = read_recording(path, "clock", "phi", "deg", start=1.5)
     assert ts.tolist() == [2.0, 3.5]
     np.testing.assert_allclose(theta, [np.pi, -np.pi / 2])
     assert unit == "time units"

@@ -9,8 +9,9 @@ from test_junction import IC, R, of_beta_c
 from pendax import iv_curve, retrapping_torque
 from pendax.cli import main
 from pendax.cli._error import UserError
-from pendax.cli._loop import crossings, read_loop, rising
+from pendax.cli._loop import read_loop
 from pendax.cli._quantity import AMPERE, factor, positive
+from pendax.fit import crossings, rising
 
 
 def loop_file(folder, header="I_uA,V_mV", scales=(1e6, 1e3), beta_c=9.0):
@@ -52,7 +53,7 @@ def test_reading(tmp_path, header, scales):
     assert np.max(loop.current) == pytest.approx(2 * IC, rel=0.01)
     assert np.max(loop.voltage) == pytest.approx(2 * IC * R, rel=0.1)
     assert 570 < loop.rising.sum() < 630
-    found = crossings(loop)
+    found = crossings(*loop)
     ir = float(retrapping_torque(1 / 3)) * IC
     np.testing.assert_allclose(found.switching, (IC, -IC), rtol=0.03)
     np.testing.assert_allclose(found.retrapping, (ir, -ir), rtol=0.05)
@@ -139,7 +140,7 @@ def test_measured_loops(shared, tmp_path, capsys, standard_promotion):
     folder = shared / "data" / "josephson"
     loop = read_loop(folder / "kit_fprakt_JJ2_iv.csv")
     assert loop.rising.sum() == 2048
-    found = crossings(loop)
+    found = crossings(*loop)
     np.testing.assert_allclose(found.switching, (112.5e-6, -113.5e-6), rtol=0.01)
     np.testing.assert_allclose(found.retrapping, (48.7e-6, -49.6e-6), rtol=0.01)
     overdamped = str(folder / "kit_fprakt_JJ3_iv.csv")

@@ -17,7 +17,8 @@ from ._loop import rising as rising_of
 from ._loop_search import Edges, LoopSearch, Outcome, Points
 from ._parameters import Parameters
 
-BINS = 64  # of running points, over which the curve is straight
+BINS = 64  # of running points, over which the curve of a junction with capacitance is straight
+MANY = 2048  # of those of a first-order junction, whose voltages cost nothing
 NEAR = 0.2  # of the retrapping current, within which leakage and noise bend the curve
 ROUNDED = 0.6  # of the current with a twentieth of the voltage, where noise rounds it
 DESCRIBED = 0.05  # of the largest voltage, that a point which the model describes may be off
@@ -93,6 +94,12 @@ def fit_junction(
     loop = loop._replace(voltage=loop.voltage - shift)
     found = crossings(*(x[loop.there] for x in loop[:3]))
     hysteretic = _hysteretic(found)
+    edge = _transition(found, hysteretic)
+    if not (np.abs(loop.current[loop.there]) > edge).sum() > 8:
+        raise ValueError(
+            "Argument `current` must reach further beyond the transition to the running state, "
+            f"above {edge:.4g} A."
+        )
     notes = []
     capacitive = hysteretic if guess is None else guess.capacitance is not None and hysteretic
     if not hysteretic:
@@ -103,8 +110,8 @@ def fit_junction(
     elif not capacitive:
         notes.append("The loop has hysteresis, which a junction without capacitance has not.")
 
-    points = _points(loop, largest)
-    start = _start(points, found, guess, capacitive)
+    points = _points(loop, largest, BINS if capacitive else MANY)
+    start = _start(points, found, edge, guess, capacitive)
     both = (points.current > 0).any() and (points.current < 0).any()
     held = {name: start.pop(name) for name in tuple(start) if name in fixed}
     if not both and "current_offset" in start:
@@ -113,14 +120,14 @@ def fit_junction(
     search = LoopSearch(
         points,
         _edges(found) if hysteretic else None,
-        held,
+        {name: jnp.asarray(x, float) for name, x in held.items()},
         parameters,
         jnp.asarray(largest),
         loss,
         optimiser,
         steps,
     )
-    outcome, used = _trimmed(search, found, loss is None, progress)
+    outcome, used = _trimmed(search, edge, loss is None, progress)
     return _fit(search, outcome, used, loop, shift, largest, notes)
 
 
@@ -182,29 +189,30 @@ def _edges(found: Crossings) -> Edges:
     both = np.abs([found.switching, found.retrapping])
     there = np.isfinite(both).all(0)
     out, back = np.where(there, both, np.nanmean(both[:, there]) if there.any() else 1.0)
-    return Edges(jnp.asarray(out), jnp.asarray(back), jnp.asarray(there, float))
+    return Edges(*(jnp.asarray(x, float) for x in (out, back, there, found.gap)))
 
 
-def _points(loop: _Loop, largest: float) -> Points:
+def _points(loop: _Loop, largest: float, most: int) -> Points:
     """Running points in the order of their currents, and means of them."""
     runs = loop.there & (np.abs(loop.voltage) >= LEVEL * largest)
     i, v = loop.current[runs], loop.voltage[runs]
     order = np.argsort(i, kind="stable")
     # No mean reaches from negative currents to positive ones.
-    parts = [p for side in (order[i[order] < 0], order[i[order] > 0])
-             for p in np.array_split(side, min(BINS // 2, side.size)) if p.size]  # fmt: skip
+    sides = [side for side in (order[i[order] < 0], order[i[order] > 0]) if side.size]
+    parts = [p for side in sides for p in np.array_split(side, min(most // 2, side.size))]
     sizes = np.array([p.size for p in parts], float)
     means = (np.array([x[p].mean() for p in parts]) for x in (i, v))
     return Points(*(jnp.asarray(x) for x in (*means, sizes / sizes.mean())))
 
 
-def _start(points: Points, found: Crossings, guess, capacitive: bool) -> dict[str, float]:
+def _start(
+    points: Points, found: Crossings, edge: float, guess, capacitive: bool
+) -> dict[str, float]:
     """Read off the loop: Ic where it switches, C from where it retraps, R where most points are."""
     i, v = np.abs(points.current), np.abs(points.voltage)
-    out, back = (float(np.nanmean(np.abs(x))) for x in found)
-    edge = back if capacitive else out
-    beyond = i > edge * (1 + NEAR)
-    ohms = v[beyond] / np.sqrt(i[beyond] ** 2 - edge**2)
+    out, back = (float(np.nanmean(np.abs(x))) for x in found[:2])
+    beyond = i > edge
+    ohms = v[beyond] / np.sqrt(i[beyond] ** 2 - (back if capacitive else out) ** 2)
     agree = np.abs(ohms[:, None] - ohms) < 2 * DESCRIBED * ohms
     resistance = float(np.median(ohms[agree[np.argmax(agree.sum(1))]]))
     start = {"critical_current": out, "resistance": resistance}
@@ -244,24 +252,23 @@ def _transition(found: Crossings, hysteretic: bool) -> float:
 
 
 def _trimmed(
-    search: LoopSearch, found: Crossings, trim: bool, progress: Callable | None
+    search: LoopSearch, edge: float, trim: bool, progress: Callable | None
 ) -> tuple[Outcome, np.ndarray]:
     """Points that the fit describes are fitted again without the others, until they stay the same.
 
     Neighbouring residuals that are alike count as fewer than they are (Bartlett 1935): what the
     model lacks must not outweigh the currents of transition.
     """
-    edge = _transition(found, search.edges is not None)
     base = np.abs(np.asarray(search.points.current)) > edge
-    if base.sum() < 4:
-        raise ValueError(
-            "Argument `current` must reach further: only a few points lie beyond the transition "
-            f"at {edge:.4g} A."
-        )
-    used, share, x = base, 1.0, jnp.zeros(search.parameters.size)
-    seen: set[bytes] = set()
+    x, share, seen = jnp.zeros(search.parameters.size), 1.0, set()
+    used = base
+    if trim:  # by what was read off, before anything is fitted to all of it
+        off = search.run(x, jnp.asarray(used), jnp.asarray(share), jnp.asarray(0)).off
+        near = base & (np.abs(np.asarray(off)) < 2 * DESCRIBED)
+        used = near if near.sum() > 8 else base
     for _ in range(AGAIN):
-        outcome = search.run(x, jnp.asarray(used), jnp.asarray(share))
+        given = jnp.asarray(used), jnp.asarray(share), jnp.asarray(search.steps)
+        outcome = search.run(x, *given)
         off = np.asarray(outcome.off)
         if progress is not None:
             progress(1 / AGAIN)

@@ -21,15 +21,19 @@ def rising(current: np.ndarray) -> np.ndarray:
 
 
 class Crossings(NamedTuple):
-    """Currents, A, at which |V| comes to, or falls to, a twentieth of its largest; or NaN."""
+    """Currents, A, at which |V| comes to, or falls to, a twentieth of its largest; or NaN.
+
+    Midway between two measured ones; `gap` is the largest distance of such two, A.
+    """
 
     switching: tuple[float, float]  # from zero voltage, for I > 0 and I < 0
     retrapping: tuple[float, float]
+    gap: float
 
 
 def crossings(current: np.ndarray, voltage: np.ndarray, rising: np.ndarray) -> Crossings:
     """Where a measured loop leaves zero voltage and returns to it; A, V, and its direction."""
-    threshold = LEVEL * np.max(np.abs(voltage))
+    threshold, gaps = LEVEL * np.max(np.abs(voltage)), [0.0]
 
     def at(sign: int, outwards: bool) -> float:
         # Outwards is rising where the current is positive.
@@ -41,9 +45,9 @@ def crossings(current: np.ndarray, voltage: np.ndarray, rising: np.ndarray) -> C
             return math.nan
         # As many above it before as below it after: single values are noise.
         split = np.argmin(np.cumsum(np.where(above, 1, -1)))
-        return sign * float(size[order][min(split + 1, above.size - 1)])
+        low, high = size[order][[split, min(split + 1, above.size - 1)]]
+        gaps.append(float(high - low))
+        return sign * float(0.5 * (low + high))
 
-    return Crossings(
-        (at(1, True), at(-1, True)),
-        (at(1, False), at(-1, False)),
-    )
+    found = (at(1, True), at(-1, True)), (at(1, False), at(-1, False))
+    return Crossings(*found, max(gaps))

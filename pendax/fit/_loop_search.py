@@ -6,7 +6,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jaxtyping import Array, Bool, Float
+from jaxtyping import Array, Bool, Float, Int
 
 from ..josephson import JosephsonJunction
 from ..josephson._iv_curve import running_voltage
@@ -31,7 +31,8 @@ class Points(NamedTuple):
 
 
 class Edges(NamedTuple):
-    """Currents, A, where the voltage appears and where it vanishes; weight 0 where not measured.
+    """Currents, A, where the voltage appears and where it vanishes, and how far measured
+    ones lie apart there; `there` is 0 where they were not measured.
 
     For positive currents and for negative ones, sign left out.
     """
@@ -39,6 +40,7 @@ class Edges(NamedTuple):
     switching: Pair
     retrapping: Pair
     there: Pair
+    gap: Float[Array, ""]
 
 
 class Outcome(NamedTuple):
@@ -67,8 +69,9 @@ class LoopSearch(eqx.Module):
         x: Float[Array, " parameters"],
         used: Bool[Array, " bins"],
         share: Float[Array, ""],
+        most: Int[Array, ""],
     ) -> Outcome:
-        """From x on, with the points `used`, that count for `share` of their number."""
+        """`most` steps from x on, with the points `used`, that count for `share` of their number."""
 
         def of_values(values):
             r, off = self._residuals(values, used, share)
@@ -78,7 +81,7 @@ class LoopSearch(eqx.Module):
             r, _ = of_values(self.parameters.at(x))
             return r if self.loss is None else rooted(self.loss, r)
 
-        found = least_squares(residuals, x, self.steps, jnp.asarray(self.steps))
+        found = least_squares(residuals, x, self.steps, most)
         if self.optimiser is not None:
 
             def loss(x):
@@ -87,7 +90,7 @@ class LoopSearch(eqx.Module):
             found = by_optimiser(loss, found.x, self.optimiser, self.steps)
         values = self.parameters.at(found.x)
         jacobian, (r, off) = jax.jacfwd(of_values, has_aux=True)(values)
-        count = share * jnp.sum(used)
+        count = share * jnp.sum(used).astype(r.dtype)
         if self.edges is not None:
             count = count + 2 * jnp.sum(self.edges.there)
         judgement = judged(r, jacobian, count, values, self.loss)
@@ -114,5 +117,6 @@ class LoopSearch(eqx.Module):
             modelled = unit, junction.retrapping_current
             measured = self.edges.switching, self.edges.retrapping
             for model, data, error in zip(modelled, measured, (SHARP, SLOW), strict=True):
-                parts.append(self.edges.there * (data - sign * zero - model) / (error * unit))
+                unsure = jnp.hypot(error * unit, self.edges.gap / 12**0.5)
+                parts.append(self.edges.there * (data - sign * zero - model) / unsure)
         return jnp.concatenate(parts), all_off

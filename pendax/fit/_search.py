@@ -84,7 +84,9 @@ class Search(eqx.Module):
             return jnp.where(jnp.isfinite(minimum.x), minimum.x, x), minimum.history
 
         # Less and less of it: where the fit ends up it would pull it off.
-        reserves = jnp.where(self.ends < full, reserve * 0.1 ** jnp.arange(self.ends.size, dtype=x.dtype), 0)
+        reserves = jnp.where(
+            self.ends < full, reserve * 0.1 ** jnp.arange(self.ends.size, dtype=x.dtype), 0
+        )
         x, history = lax.scan(stage, x, (self.ends, reserves))
         history = history[-1]
 
