@@ -42,6 +42,11 @@ def main() -> int:
     junction.add_argument("--scenes", type=int, default=40, help="random voltages of either kind")
     junction.add_argument("--rounds", type=int, default=5, help="timings of each, interleaved")
     junction.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
+    fit = commands.add_parser("fit", help="parameters from random recordings")
+    fit.add_argument("--seed", type=int, default=1, help="draws other scenes")
+    fit.add_argument("--scenes", type=int, default=1000, help="random scenes")
+    fit.add_argument("--rounds", type=int, default=5, help="timings of each, interleaved")
+    fit.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
     options = vars(parser.parse_args())
 
     import jax

@@ -90,7 +90,7 @@ def run(arguments: argparse.Namespace) -> None:
     say("\nwrote", *(arguments.out / name for name in names), sep="\n  ")
 
 
-def _fitted(recording: Recording, arguments: argparse.Namespace) -> "Fit":
+def _fitted(recording: Recording, arguments: argparse.Namespace) -> "Fit[Pendulum]":
     from tqdm import tqdm
 
     from ..fit import fit_trajectory
@@ -100,14 +100,13 @@ def _fitted(recording: Recording, arguments: argparse.Namespace) -> "Fit":
     options: dict[str, Any] = {"starts": arguments.starts, "unwrap": arguments.unwrap}
     if arguments.offset:
         options["offset"] = 0.0
-    if arguments.sigma is not None:
-        sigma = arguments.sigma * recording.radians
-        options["sigma"] = sigma
     hidden = True if arguments.quiet else None  # None: hidden unless on a terminal
     try:
         guess = _guess(recording, arguments)
-        if arguments.sigma is not None and recording.velocity is not None:
-            options["sigma"] = (sigma, sigma * math.sqrt(float(guess.epsilon)))
+        if arguments.sigma is not None:
+            sigma = arguments.sigma * recording.radians
+            rate = math.sqrt(float(guess.epsilon))
+            options["sigma"] = sigma if recording.velocity is None else (sigma, sigma * rate)
         bars = "{l_bar}{bar}| {elapsed}"
         with tqdm(total=1.0, desc="fit", bar_format=bars, delay=0.5, disable=hidden) as bar:
             return fit_trajectory(

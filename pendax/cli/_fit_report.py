@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from .._pendulum import Pendulum
 from ..fit import Fit
+from ..josephson import JosephsonJunction
 from ._recording import Recording
 
 _NOISE = "and the standard errors, which take them for noise, are too small"
@@ -14,7 +16,7 @@ _FEWER = "for which the standard errors allow"
 KEPT = -4.0  # standard deviations of the run test, below which residuals are no noise
 
 
-def fit_report(path: Path, recording: Recording, fit: Fit) -> str:
+def fit_report(path: Path, recording: Recording, fit: Fit[Pendulum]) -> str:
     """The parameters, then how well they describe the recording."""
     ts, unit = recording.ts, recording.time_unit
     inverse = f"1/({unit})" if " " in unit else f"1/{unit}"
@@ -44,7 +46,7 @@ def fit_report(path: Path, recording: Recording, fit: Fit) -> str:
     return "\n".join(lines)
 
 
-def junction_report(fit: Fit) -> str:
+def junction_report(fit: Fit[JosephsonJunction]) -> str:
     """Ic, R, C and what follows from them, then how well they describe the loop."""
     junction = fit.model
     values, errors = _junction_values(fit), fit.errors
@@ -68,7 +70,7 @@ def junction_report(fit: Fit) -> str:
     return "\n".join([*lines, *quality(fit, 1e6 * _rms(fit.residuals), "µV", _FEWER), ""])
 
 
-def junction_numbers(fit: Fit) -> dict[str, Any]:
+def junction_numbers(fit: Fit[JosephsonJunction]) -> dict[str, Any]:
     """For machines: the same in A, Ω, F and V."""
     current, voltage = (float(x) for x in np.asarray(fit.offset))
     return {
@@ -153,13 +155,13 @@ def _rms(x: Any) -> float:
     return float(np.sqrt(np.mean(np.asarray(x) ** 2)))
 
 
-def _equation(fit: Fit) -> str:
+def _equation(fit: Fit[Pendulum]) -> str:
     terms = ["θ̈", *(["β θ̇"] if fit.model.beta is not None else []), "ε sin θ"]
     right = "τ" if fit.model.tau is not None else "0"
     return f"{' + '.join(terms)} = {right}"
 
 
-def _period(fit: Fit, unit: str) -> str:
+def _period(fit: Fit[Pendulum], unit: str) -> str:
     epsilon = float(fit.model.epsilon)
     period = 2 * math.pi / math.sqrt(epsilon)
     error = 0.5 * period * float(fit.errors.get("epsilon", 0.0)) / epsilon

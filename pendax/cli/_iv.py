@@ -185,16 +185,15 @@ def _draw(loop: Loop, junction, model: np.ndarray | None, path: Path) -> None:
 
     with mpl.rc_context(plot.STYLE):
         figure = plot.new_figure(7.5, 5.0 if model is None else 6.5)
-        if model is None:
-            ax = figure.subplots()
-        else:
-            ax, below = figure.subplots(2, 1, sharex=True, height_ratios=(3, 1))
-        plot.measured_loop(ax, loop.current, loop.voltage, loop.rising)
+        rows = 1 if model is None else 2
+        axes = figure.subplots(rows, 1, sharex=True, height_ratios=(3, 1)[:rows], squeeze=False)
+        ax = plot.measured_loop(axes[0, 0], loop.current, loop.voltage, loop.rising)
         if junction is not None:
             ends = np.min(loop.current), np.max(loop.current)
             plot.iv_curve(ax, iv_curve(junction, np.linspace(*ends, 2001)), label="model")
         ax.legend(loc="upper left")
         if model is not None:
+            below = axes[1, 0]
             plot.measured_loop(below, loop.current, loop.voltage - model, loop.rising)
             below.set_ylabel("measured − model\n" + below.get_ylabel().partition(" ")[2])
             ax.set_xlabel("")

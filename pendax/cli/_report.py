@@ -62,7 +62,7 @@ def _deviations(epsilon: float) -> list[str]:
     ]
 
 
-def swing_report(path: Path, cycles: Cycles, fit: Fit, unit: str) -> str:
+def swing_report(path: Path, cycles: Cycles, fit: Fit[Pendulum], unit: str) -> str:
     """Cycle by cycle, then the small-angle period."""
     epsilon, error = float(fit.model.epsilon), float(fit.errors["epsilon"])
     t0 = 2 * math.pi / math.sqrt(epsilon)

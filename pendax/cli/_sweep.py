@@ -16,10 +16,11 @@ from ._recording import write_cycles
 
 if TYPE_CHECKING:
     from .._critical import CriticalLaw
+    from .._pendulum import Pendulum
     from .._sweep import Sweep
     from ..fit import Cycles, Fit
 
-    Measured = tuple[Cycles, Fit, str] | None
+    Measured = tuple[Cycles, Fit[Pendulum], str] | None
 
 SUMMARY = "ω(v0) across the separatrix, its critical law, and a measured swing"
 DESCRIPTION = """\

@@ -12,6 +12,7 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from .._critical import Side
+from .._pendulum import Pendulum
 from .._sweep import Sweep
 from ..fit import Cycles, Fit
 from ..plot import (
@@ -23,7 +24,7 @@ from ..plot import (
     new_figure,
 )
 
-Measured = tuple[Cycles, Fit] | None
+Measured = tuple[Cycles, Fit[Pendulum]] | None
 
 
 def _styled(draw: Callable[[Sweep, Measured], Figure]) -> Callable[[Sweep, Measured], Figure]:
@@ -83,7 +84,7 @@ def figure_13(swept: Sweep, measured: Measured) -> Figure:
     return figure
 
 
-def _points(ax, measured: tuple[Cycles, Fit]) -> None:
+def _points(ax, measured: tuple[Cycles, Fit[Pendulum]]) -> None:
     found, fit = measured
     measured_cycles(
         ax,

@@ -1,5 +1,7 @@
 """What every fit returns."""
 
+from typing import Generic, TypeVar
+
 import equinox as eqx
 from jaxtyping import Array, Float
 
@@ -7,8 +9,10 @@ from .._pendulum import Pendulum
 from .._results import Result
 from ..josephson import JosephsonJunction
 
+Model = TypeVar("Model", Pendulum, JosephsonJunction)
 
-class Fit(eqx.Module):
+
+class Fit(eqx.Module, Generic[Model]):
     """A fitted scene or junction, how well it is known, and how well it describes the data.
 
     - `model`: the scene or junction with the fitted values.
@@ -30,7 +34,7 @@ class Fit(eqx.Module):
     - `notes`: what should be said in words.
     """
 
-    model: Pendulum | JosephsonJunction
+    model: Model
     v0: Float[Array, "..."] | None
     theta0: Float[Array, "..."] | None
     offset: Float[Array, "..."] | None

@@ -15,7 +15,7 @@ from ._judgement import goodness
 
 def fit_frequency(
     amplitude: ArrayLike, period: ArrayLike, *, sigma: ArrayLike | None = None
-) -> Fit:
+) -> Fit[Pendulum]:
     """ε from cycles, through the exact T(θ_max) = T0 / AGM(1, cos(θ_max/2)).
 
     **Arguments:**

@@ -9,7 +9,8 @@ import numpy as np
 from jaxtyping import ArrayLike
 
 from .._arrays import concrete, whole
-from ..josephson import REDUCED, JosephsonJunction, iv_curve
+from ..josephson import REDUCED, JosephsonJunction
+from ..josephson._iv_curve import autonomous
 from ._fit import Fit
 from ._judgement import ended, goodness
 from ._loop import LEVEL, Crossings, crossings
@@ -47,7 +48,7 @@ def fit_junction(
     optimiser: Any = None,
     steps: int | None = None,
     progress: Callable[[float], Any] | None = None,
-) -> Fit:
+) -> Fit[JosephsonJunction]:
     """Ic, R and C of a junction, and the offset of the current, from a measured I–V loop.
 
     What a loop has to say comes from three places: where it switches, Ic itself; where it
@@ -221,7 +222,7 @@ def _start(
         start["capacitance"] = beta_c * REDUCED / (out * resistance**2)
     if guess is not None:
         leaves = guess.critical_current, guess.resistance, guess.capacitance
-        given = dict(zip(NAMES, leaves, strict=False))
+        given: dict[str, Any] = dict(zip(NAMES, leaves, strict=False))
         start = {name: float(given[name]) for name in start}
     signs = np.array(found.switching)
     start["current_offset"] = float(np.mean(signs)) if np.isfinite(signs).all() else 0.0
@@ -266,9 +267,9 @@ def _trimmed(
         off = search.run(x, jnp.asarray(used), jnp.asarray(share), jnp.asarray(0)).off
         near = base & (np.abs(np.asarray(off)) < 2 * DESCRIBED)
         used = near if near.sum() > 8 else base
+    steps = jnp.asarray(search.steps)
+    outcome = search.run(x, jnp.asarray(used), jnp.asarray(share), steps)
     for _ in range(AGAIN):
-        given = jnp.asarray(used), jnp.asarray(share), jnp.asarray(search.steps)
-        outcome = search.run(x, *given)
         off = np.asarray(outcome.off)
         if progress is not None:
             progress(1 / AGAIN)
@@ -282,6 +283,7 @@ def _trimmed(
             again = again & used
         seen.add(again.tobytes())
         used, share = again, fewer
+        outcome = search.run(x, jnp.asarray(used), jnp.asarray(share), steps)
     return outcome, used
 
 
@@ -294,11 +296,14 @@ def _independent(off: np.ndarray) -> float:
     return float(np.clip((1 - rho) / (1 + rho), least, 1.0))
 
 
-def _fit(search, outcome: Outcome, used, loop: _Loop, shift, largest, notes) -> Fit:
+def _fit(
+    search, outcome: Outcome, used, loop: _Loop, shift, largest, notes
+) -> Fit[JosephsonJunction]:
     parameters = search.parameters
     values = search.held | parameters.split(parameters.at(outcome.x))
-    leaves = (values[name] for name in NAMES[:2])
-    model = JosephsonJunction(*leaves, values.get("capacitance"))
+    model = JosephsonJunction(
+        values["critical_current"], values["resistance"], values.get("capacitance")
+    )
     zero = float(values["current_offset"])
     residuals = loop.voltage - _modelled(model, loop, zero)
     rms = np.sqrt(np.mean(np.asarray(outcome.off)[used] ** 2)) if used.any() else math.nan
@@ -327,7 +332,7 @@ def _modelled(model: JosephsonJunction, loop: _Loop, zero: float) -> np.ndarray:
     """Of the branch that each point was measured on."""
     current = np.where(np.isfinite(loop.current), loop.current, 0) - zero
     order = np.argsort(current, kind="stable")
-    curve = iv_curve(model, current[order])
+    curve = autonomous(model, jnp.asarray(current[order]))
     voltages = np.empty((2, current.size))
     voltages[:, order] = curve.voltage_down, curve.voltage_up
     return np.where(loop.rising, voltages[1], voltages[0])

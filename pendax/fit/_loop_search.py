@@ -71,7 +71,7 @@ class LoopSearch(eqx.Module):
         share: Float[Array, ""],
         most: Int[Array, ""],
     ) -> Outcome:
-        """`most` steps from x on, with the points `used`, that count for `share` of their number."""
+        """`most` steps from x on, with the points `used`, counted as `share` of their number."""
 
         def of_values(values):
             r, off = self._residuals(values, used, share)

@@ -89,7 +89,7 @@ def by_optimiser(
             change, state = optimiser.update(
                 slope, state, x, value=value, grad=slope, value_fn=loss
             )
-        return (optax.apply_updates(x, change), state), value
+        return (x + change, state), value
 
     (x, _), history = lax.scan(step, (x, optimiser.init(x)), length=steps)
     return Minimum(x, history)

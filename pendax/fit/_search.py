@@ -147,7 +147,7 @@ class Search(eqx.Module):
         theta, v = self._model(values, end)
         used = data.there & (data.ts <= end)
         parts = [jnp.where(used, (data.theta - theta) * data.weight, 0)]
-        if data.velocity is not None:
+        if data.velocity is not None and data.velocity_weight is not None:
             parts.append(jnp.where(used, (data.velocity - v) * data.velocity_weight, 0))
         return jnp.concatenate([jnp.ravel(x) for x in parts]), (theta, v)
 

@@ -41,7 +41,7 @@ def fit_trajectory(
     steps: int | None = None,
     unwrap: bool = False,
     progress: Callable[[float], Any] | None = None,
-) -> Fit:
+) -> Fit[Pendulum]:
     """The terms of a scene and its initial state, from a recording of its motion.
 
     Weighted least squares by Levenberg–Marquardt, on a stretch of two radians of √ε t first, then
@@ -123,9 +123,9 @@ def fit_trajectory(
     values = held | parameters.split(found.values)
     values = {name: shaped(name, x) for name, x in values.items()}
     errors = parameters.split(found.judgement.errors)
-    model = Pendulum(**{name: values.get(name, getattr(guess, name)) for name in TERMS})
+    model = Pendulum(values["epsilon"], values.get("beta"), values.get("tau", guess.tau))
     residuals = recording.theta - found.theta
-    speed = None if velocity is None else recording.velocity - found.velocity
+    speed = None if recording.velocity is None else recording.velocity - found.velocity
     return Fit(
         model=model,
         v0=values["v0"],
@@ -192,10 +192,10 @@ def _recording(ts, theta, velocity, sigma, mask, guess, unwrap) -> Recording:
     ts, theta = rows(ts), rows(theta)
     velocity = None if velocity is None else rows(velocity)
     there = there.reshape(theta.shape)
-    seen = [concrete(x) for x in (ts, theta, there)]
-    if all(x is not None for x in seen):
+    times, angles, known = (concrete(x) for x in (ts, theta, there))
+    if times is not None and angles is not None and known is not None:
         speeds = None if velocity is None else concrete(velocity)
-        require_recording(seen[0], seen[1], speeds, seen[2], callable(guess.tau), unwrap)
+        require_recording(times, angles, speeds, known, callable(guess.tau), unwrap)
     if unwrap:
         theta = _unwrapped(theta, there)
     one = jnp.ones_like(theta)

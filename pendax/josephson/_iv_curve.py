@@ -87,12 +87,13 @@ def iv_curve(
     _require_sweep(current, junction)
     periods = whole("periods", periods, 16)
     if drive is None:
-        return _autonomous(junction, current)
+        return autonomous(junction, current)
     return IVCurve(current, *driven(junction, current, drive, periods))
 
 
 @jax.jit
-def _autonomous(junction: JosephsonJunction, current: FloatArray) -> IVCurve:
+def autonomous(junction: JosephsonJunction, current: FloatArray) -> IVCurve:
+    """Without a drive, of whatever currents in any order."""
     lanes = common(**junction.parameters())
     # The current behind the axes of the lanes.
     behind = {str(i): x.reshape(x.shape + (1,) * current.ndim) for i, x in enumerate(lanes)}
