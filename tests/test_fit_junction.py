@@ -73,10 +73,10 @@ def test_half_a_loop_has_no_offset():
 def test_what_the_model_has_not_is_left_out_and_named():
     """A gap: beyond 2 Ic the voltage hardly grows."""
     true = JosephsonJunction(IC, R)
-    voltage = loop(true, 1.25 * SWEEP)
+    voltage = loop(true, 1.5 * SWEEP)
     knee = 3.3 * IC * R
     bent = np.clip(voltage, -knee, knee) + 0.1 * (voltage - np.clip(voltage, -knee, knee))
-    fit = fit_junction(1.25 * SWEEP, bent)
+    fit = fit_junction(1.5 * SWEEP, bent)
     # To 5 % of the largest voltage the bend's beginning is described.
     assert float(fit.model.resistance) == pytest.approx(R, rel=0.025)
     assert "more than 5%" in fit.notes[-1]

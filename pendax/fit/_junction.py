@@ -2,38 +2,35 @@
 
 import math
 from collections.abc import Callable, Sequence
-from typing import Any, NamedTuple
+from typing import Any
 
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import ArrayLike
 
-from .._arrays import concrete, whole
-from ..josephson import REDUCED, JosephsonJunction
+from .._arrays import whole
+from ..josephson import JosephsonJunction
 from ..josephson._iv_curve import autonomous
 from ._fit import Fit
 from ._judgement import ended, goodness
-from ._loop import LEVEL, Crossings, crossings
-from ._loop import rising as rising_of
-from ._loop_search import Edges, LoopSearch, Outcome, Points
+from ._loop import LEVEL, crossings
+from ._loop_search import LoopSearch, Outcome, Points
+from ._measured_loop import (
+    DESCRIBED,
+    NAMES,
+    Loop,
+    edges_of,
+    is_hysteretic,
+    loop_of,
+    points_of,
+    start_of,
+    transition,
+)
 from ._parameters import Parameters
 
 BINS = 64  # of running points, over which the curve of a junction with capacitance is straight
 MANY = 2048  # of those of a first-order junction, whose voltages cost nothing
-NEAR = 0.2  # of the retrapping current, within which leakage and noise bend the curve
-ROUNDED = 0.6  # of the current with a twentieth of the voltage, where noise rounds it
-DESCRIBED = 0.05  # of the largest voltage, that a point which the model describes may be off
-HYSTERESIS = 0.02  # of the switching current, between it and the retrapping one
 AGAIN = 12  # times at most that points are chosen anew
-
-NAMES = ("critical_current", "resistance", "capacitance", "current_offset")
-
-
-class _Loop(NamedTuple):
-    current: np.ndarray
-    voltage: np.ndarray  # without the offset
-    rising: np.ndarray
-    there: np.ndarray
 
 
 def fit_junction(
@@ -88,14 +85,14 @@ def fit_junction(
     rounds the curve.
     """
     steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
-    loop = _checked(current, voltage, rising, mask)
+    loop = loop_of(current, voltage, rising, mask)
     largest = float(np.max(np.abs(loop.voltage[loop.there])))
     rest = loop.there & (np.abs(loop.voltage) < LEVEL * largest)
     shift = float(np.median(loop.voltage[rest])) if rest.any() else 0.0
     loop = loop._replace(voltage=loop.voltage - shift)
     found = crossings(*(x[loop.there] for x in loop[:3]))
-    hysteretic = _hysteretic(found)
-    edge = _transition(found, hysteretic)
+    hysteretic = is_hysteretic(found)
+    edge = transition(found, hysteretic)
     if not (np.abs(loop.current[loop.there]) > edge).sum() > 8:
         raise ValueError(
             "Argument `current` must reach further beyond the transition to the running state, "
@@ -111,8 +108,8 @@ def fit_junction(
     elif not capacitive:
         notes.append("The loop has hysteresis, which a junction without capacitance has not.")
 
-    points = _points(loop, largest, BINS if capacitive else MANY)
-    start = _start(points, found, edge, guess, capacitive)
+    points = points_of(loop, largest, BINS if capacitive else MANY)
+    start = start_of(points, found, edge, guess, capacitive)
     both = (points.current > 0).any() and (points.current < 0).any()
     held = {name: start.pop(name) for name in tuple(start) if name in fixed}
     if not both and "current_offset" in start:
@@ -120,7 +117,7 @@ def fit_junction(
     parameters = _parameters(start, held, fixed)
     search = LoopSearch(
         points,
-        _edges(found) if hysteretic else None,
+        edges_of(found) if hysteretic else None,
         {name: jnp.asarray(x, float) for name, x in held.items()},
         parameters,
         jnp.asarray(largest),
@@ -130,103 +127,6 @@ def fit_junction(
     )
     outcome, used = _trimmed(search, edge, loss is None, progress)
     return _fit(search, outcome, used, loop, shift, largest, notes)
-
-
-def _checked(current, voltage, rising, mask) -> _Loop:
-    arrays = {"current": current, "voltage": voltage}
-    seen = {name: concrete(x) for name, x in arrays.items()}
-    for name, x in seen.items():
-        if x is None:
-            raise ValueError(
-                f"Argument `{name}` must be numbers, but got {type(arrays[name]).__name__}: what "
-                "is fitted depends on the data, which no transformation may hide."
-            )
-    i, v = (np.asarray(x, float) for x in seen.values())
-    if i.ndim != 1 or i.shape != v.shape:
-        raise ValueError(
-            "Arguments `current` and `voltage` must have one axis of equal length, "
-            f"but got shapes {i.shape} and {v.shape}."
-        )
-    there = np.ones(i.shape, bool) if mask is None else np.asarray(mask)
-    if there.dtype != bool or there.shape != i.shape:
-        raise ValueError(
-            f"Argument `mask` must be booleans of shape {i.shape}, "
-            f"but got {there.dtype} {there.shape}."
-        )
-    if there.sum() < 16:
-        raise ValueError(
-            f"Argument `current` must have 16 or more points that are fitted, got {there.sum()}."
-        )
-    for name, x in (("current", i), ("voltage", v)):
-        bad = there & ~np.isfinite(x)
-        if bad.any():
-            raise ValueError(
-                f"Argument `{name}` must be finite, but got {x[bad][0]} at "
-                f"{int(np.flatnonzero(bad)[0])}; leave such points out, or give a `mask`."
-            )
-        if np.ptp(x[there]) == 0:
-            raise ValueError(f"Argument `{name}` must vary, but it is {x[there][0]:.6g} always.")
-    for name, x, most, unit in (("current", i, 10.0, "A"), ("voltage", v, 1.0, "V")):
-        if np.abs(x[there]).max() > most:
-            raise ValueError(
-                f"Argument `{name}` must be in {unit}, {most:g} at most, "
-                f"but it reaches {np.abs(x[there]).max():.6g}."
-            )
-    up = rising_of(np.where(there, i, np.nanmedian(i))) if rising is None else np.asarray(rising)
-    if up.dtype != bool or up.shape != i.shape:
-        raise ValueError(
-            f"Argument `rising` must be booleans of shape {i.shape}, but got {up.dtype} {up.shape}."
-        )
-    return _Loop(i, v, up, there)
-
-
-def _hysteretic(found: Crossings) -> bool:
-    out, back = np.abs(found.switching), np.abs(found.retrapping)
-    return bool(np.any(out - back > HYSTERESIS * out))
-
-
-def _edges(found: Crossings) -> Edges:
-    """What was measured of both on each side; 1 stands where it wasn't."""
-    both = np.abs([found.switching, found.retrapping])
-    there = np.isfinite(both).all(0)
-    out, back = np.where(there, both, np.nanmean(both[:, there]) if there.any() else 1.0)
-    return Edges(*(jnp.asarray(x, float) for x in (out, back, there, found.gap)))
-
-
-def _points(loop: _Loop, largest: float, most: int) -> Points:
-    """Running points in the order of their currents, and means of them."""
-    runs = loop.there & (np.abs(loop.voltage) >= LEVEL * largest)
-    i, v = loop.current[runs], loop.voltage[runs]
-    order = np.argsort(i, kind="stable")
-    # No mean reaches from negative currents to positive ones.
-    sides = [side for side in (order[i[order] < 0], order[i[order] > 0]) if side.size]
-    parts = [p for side in sides for p in np.array_split(side, min(most // 2, side.size))]
-    sizes = np.array([p.size for p in parts], float)
-    means = (np.array([x[p].mean() for p in parts]) for x in (i, v))
-    return Points(*(jnp.asarray(x) for x in (*means, sizes / sizes.mean())))
-
-
-def _start(
-    points: Points, found: Crossings, edge: float, guess, capacitive: bool
-) -> dict[str, float]:
-    """Read off the loop: Ic where it switches, C from where it retraps, R where most points are."""
-    i, v = np.abs(points.current), np.abs(points.voltage)
-    out, back = (float(np.nanmean(np.abs(x))) for x in found[:2])
-    beyond = i > edge
-    ohms = v[beyond] / np.sqrt(i[beyond] ** 2 - (back if capacitive else out) ** 2)
-    agree = np.abs(ohms[:, None] - ohms) < 2 * DESCRIBED * ohms
-    resistance = float(np.median(ohms[agree[np.argmax(agree.sum(1))]]))
-    start = {"critical_current": out, "resistance": resistance}
-    if capacitive:
-        beta_c = (4 * out / (math.pi * back)) ** 2
-        start["capacitance"] = beta_c * REDUCED / (out * resistance**2)
-    if guess is not None:
-        leaves = guess.critical_current, guess.resistance, guess.capacitance
-        given: dict[str, Any] = dict(zip(NAMES, leaves, strict=False))
-        start = {name: float(given[name]) for name in start}
-    signs = np.array(found.switching)
-    start["current_offset"] = float(np.mean(signs)) if np.isfinite(signs).all() else 0.0
-    return start
 
 
 def _parameters(start: dict[str, float], held: dict[str, float], fixed) -> Parameters:
@@ -243,13 +143,6 @@ def _parameters(start: dict[str, float], held: dict[str, float], fixed) -> Param
     arrays = {name: jnp.asarray(x, float) for name, x in start.items()}
     positive = frozenset(NAMES[:3]) & set(start)
     return Parameters(arrays, scale, positive, tuple(start))
-
-
-def _transition(found: Crossings, hysteretic: bool) -> float:
-    """The current from which on the curve is that of the model."""
-    if hysteretic:
-        return (1 + NEAR) * float(np.nanmean(np.abs(found.retrapping)))
-    return (1 + ROUNDED) * float(np.nanmean(np.abs(found.switching)))
 
 
 def _trimmed(
@@ -297,7 +190,7 @@ def _independent(off: np.ndarray) -> float:
 
 
 def _fit(
-    search, outcome: Outcome, used, loop: _Loop, shift, largest, notes
+    search, outcome: Outcome, used, loop: Loop, shift, largest, notes
 ) -> Fit[JosephsonJunction]:
     parameters = search.parameters
     values = search.held | parameters.split(parameters.at(outcome.x))
@@ -328,7 +221,7 @@ def _fit(
     )
 
 
-def _modelled(model: JosephsonJunction, loop: _Loop, zero: float) -> np.ndarray:
+def _modelled(model: JosephsonJunction, loop: Loop, zero: float) -> np.ndarray:
     """Of the branch that each point was measured on."""
     current = np.where(np.isfinite(loop.current), loop.current, 0) - zero
     order = np.argsort(current, kind="stable")
@@ -338,13 +231,13 @@ def _modelled(model: JosephsonJunction, loop: _Loop, zero: float) -> np.ndarray:
     return np.where(loop.rising, voltages[1], voltages[0])
 
 
-def _kept(loop: _Loop, points: Points, used: np.ndarray) -> np.ndarray:
+def _kept(loop: Loop, points: Points, used: np.ndarray) -> np.ndarray:
     """The measured points that the fitted means are of."""
     nearest = np.argmin(np.abs(loop.current[:, None] - np.asarray(points.current)), 1)
     return loop.there & used[nearest] & (loop.voltage * loop.current > 0)
 
 
-def _undescribed(loop: _Loop, residuals: np.ndarray, largest: float) -> list[str]:
+def _undescribed(loop: Loop, residuals: np.ndarray, largest: float) -> list[str]:
     """Where more than a few neighbours are off, from … to …, in |I| and |V|."""
     off = loop.there & (np.abs(residuals) > DESCRIBED * largest)
     share = off.sum() / loop.there.sum()

@@ -7,6 +7,8 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
+from .._arrays import common, concrete, floating, require
+from .._pendulum import Pendulum
 from ._thin_qr import reduced, substituted
 from ._turns import turning_points
 
@@ -25,6 +27,71 @@ class Recording(NamedTuple):
     there: Bool[Array, "runs samples"]
     velocity: Samples | None
     velocity_weight: Samples | None
+
+
+def recording_of(ts, theta, velocity, sigma, mask, guess: Pendulum, unwrap: bool) -> Recording:
+    """Checked where its values can be seen, one run a row."""
+    of_theta, of_velocity = sigma if isinstance(sigma, tuple) else (sigma, None)
+    if sigma is None and velocity is not None:
+        of_velocity = jnp.sqrt(guess.epsilon)
+    for x in (of_theta, of_velocity):
+        require("sigma", x, "positive", lambda x: x > 0)
+    if (velocity is None) != (of_velocity is None):
+        raise ValueError(
+            "Argument `sigma` must be a pair, of `theta` and of `velocity`, where both are fitted, "
+            "and one where `theta` is alone."
+        )
+    shape = jnp.shape(theta)
+    if len(shape) not in (1, 2) or 0 in shape:
+        raise ValueError(
+            f"Argument `theta` must have one axis of samples, or two, runs first, but got {shape}."
+        )
+    given = {"ts": ts, "theta": theta, "velocity": velocity}
+    for name, x in given.items():
+        if x is not None and jnp.shape(x) not in (shape, shape[-1:]):
+            raise ValueError(f"Argument `{name}` must have shape {shape}, but got {jnp.shape(x)}.")
+    there = jnp.ones(shape, bool) if mask is None else jnp.asarray(mask)
+    if there.dtype != bool or there.shape != shape:
+        raise ValueError(
+            f"Argument `mask` must be booleans of shape {shape}, but got {there.dtype} of shape "
+            f"{there.shape}."
+        )
+
+    def rows(x):
+        x = jnp.asarray(common(x=x)[0], floating(1.0))
+        return jnp.broadcast_to(x, shape).reshape(-1, shape[-1])
+
+    ts, theta = rows(ts), rows(theta)
+    velocity = None if velocity is None else rows(velocity)
+    there = there.reshape(theta.shape)
+    times, angles, known = (concrete(x) for x in (ts, theta, there))
+    if times is not None and angles is not None and known is not None:
+        speeds = None if velocity is None else concrete(velocity)
+        _require_recording(times, angles, speeds, known, callable(guess.tau), unwrap)
+    if unwrap:
+        theta = _unwrapped(theta, there)
+    one = jnp.ones_like(theta)
+    weight, speed_weight = (
+        jnp.where(there, one if x is None else 1 / rows(x), 0) for x in (of_theta, of_velocity)
+    )
+    if velocity is None:
+        speed_weight = None
+    return Recording(_filled(ts, there), theta, weight, there, velocity, speed_weight)
+
+
+def _filled(ts, there):
+    """Times that stand still where nothing was measured: the next is no earlier."""
+    first = jnp.min(jnp.where(there, ts, jnp.inf), axis=1, keepdims=True)
+    known = jnp.where(there, ts, -jnp.inf)
+    return jnp.maximum(jax.lax.cummax(known, axis=1), first)
+
+
+def _unwrapped(theta, there):
+    """Along the samples that are there."""
+    order = jnp.argsort(~there, axis=1, stable=True)
+    dense = jnp.take_along_axis(jnp.where(there, theta, 0), order, 1)
+    back = jnp.argsort(order, axis=1, stable=True)
+    return jnp.where(there, jnp.take_along_axis(jnp.unwrap(dense, axis=1), back, 1), theta)
 
 
 def start_of(
@@ -51,7 +118,7 @@ def start_of(
     return found[:, 0], v0
 
 
-def require_recording(
+def _require_recording(
     ts: np.ndarray,
     theta: np.ndarray,
     velocity: np.ndarray | None,

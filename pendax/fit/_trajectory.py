@@ -3,19 +3,18 @@
 from collections.abc import Callable, Sequence
 from typing import Any
 
-import jax
 import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, ArrayLike, Float
 
-from .._arrays import common, concrete, floating, require, whole
+from .._arrays import common, concrete, floating, whole
 from .._method import Method, TaylorSeries, choose
 from .._pendulum import Pendulum
 from ..taylor import Scene, State, budget, is_overdamped
 from ._fit import Fit
 from ._judgement import ended
 from ._parameters import Parameters
-from ._recording import Recording, require_recording, start_of
+from ._recording import Recording, recording_of, start_of
 from ._search import Search
 
 TERMS = ("epsilon", "beta", "tau")
@@ -95,7 +94,7 @@ def fit_trajectory(
     steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
     dtype = floating(ts, theta, *terms.values())
     shape = jnp.shape(theta)
-    recording = _recording(ts, theta, velocity, sigma, mask, guess, unwrap)
+    recording = recording_of(ts, theta, velocity, sigma, mask, guess, unwrap)
     held, parameters = _parameters(
         terms, recording, {"v0": v0, "theta0": theta0, "offset": offset}, fixed
     )
@@ -155,71 +154,6 @@ def _terms(guess: Pendulum) -> dict[str, Float[Array, ""]]:
                 "jax.vmap fits many."
             )
     return {name: jnp.asarray(x, floating(1.0)) for name, x in terms.items()}
-
-
-def _recording(ts, theta, velocity, sigma, mask, guess, unwrap) -> Recording:
-    """Checked where its values can be seen, one run a row."""
-    of_theta, of_velocity = sigma if isinstance(sigma, tuple) else (sigma, None)
-    if sigma is None and velocity is not None:
-        of_velocity = jnp.sqrt(guess.epsilon)
-    for x in (of_theta, of_velocity):
-        require("sigma", x, "positive", lambda x: x > 0)
-    if (velocity is None) != (of_velocity is None):
-        raise ValueError(
-            "Argument `sigma` must be a pair, of `theta` and of `velocity`, where both are fitted, "
-            "and one where `theta` is alone."
-        )
-    shape = jnp.shape(theta)
-    if len(shape) not in (1, 2) or 0 in shape:
-        raise ValueError(
-            f"Argument `theta` must have one axis of samples, or two, runs first, but got {shape}."
-        )
-    given = {"ts": ts, "theta": theta, "velocity": velocity}
-    for name, x in given.items():
-        if x is not None and jnp.shape(x) not in (shape, shape[-1:]):
-            raise ValueError(f"Argument `{name}` must have shape {shape}, but got {jnp.shape(x)}.")
-    there = jnp.ones(shape, bool) if mask is None else jnp.asarray(mask)
-    if there.dtype != bool or there.shape != shape:
-        raise ValueError(
-            f"Argument `mask` must be booleans of shape {shape}, but got {there.dtype} of shape "
-            f"{there.shape}."
-        )
-
-    def rows(x):
-        x = jnp.asarray(common(x=x)[0], floating(1.0))
-        return jnp.broadcast_to(x, shape).reshape(-1, shape[-1])
-
-    ts, theta = rows(ts), rows(theta)
-    velocity = None if velocity is None else rows(velocity)
-    there = there.reshape(theta.shape)
-    times, angles, known = (concrete(x) for x in (ts, theta, there))
-    if times is not None and angles is not None and known is not None:
-        speeds = None if velocity is None else concrete(velocity)
-        require_recording(times, angles, speeds, known, callable(guess.tau), unwrap)
-    if unwrap:
-        theta = _unwrapped(theta, there)
-    one = jnp.ones_like(theta)
-    weight, speed_weight = (
-        jnp.where(there, one if x is None else 1 / rows(x), 0) for x in (of_theta, of_velocity)
-    )
-    if velocity is None:
-        speed_weight = None
-    return Recording(_filled(ts, there), theta, weight, there, velocity, speed_weight)
-
-
-def _filled(ts, there):
-    """Times that stand still where nothing was measured: the next is no earlier."""
-    first = jnp.min(jnp.where(there, ts, jnp.inf), axis=1, keepdims=True)
-    known = jnp.where(there, ts, -jnp.inf)
-    return jnp.maximum(jax.lax.cummax(known, axis=1), first)
-
-
-def _unwrapped(theta, there):
-    """Along the samples that are there."""
-    order = jnp.argsort(~there, axis=1, stable=True)
-    dense = jnp.take_along_axis(jnp.where(there, theta, 0), order, 1)
-    back = jnp.argsort(order, axis=1, stable=True)
-    return jnp.where(there, jnp.take_along_axis(jnp.unwrap(dense, axis=1), back, 1), theta)
 
 
 def _parameters(terms, recording: Recording, states, fixed) -> tuple[dict, Parameters]:
