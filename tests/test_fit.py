@@ -190,6 +190,7 @@ BAD = [
     ({"theta": np.degrees(motion())}, "`theta` must be in radians, but it swings through"),
     ({"theta": motion(theta0=3.0, v0=9.0) % (2 * np.pi)}, "must not be wrapped, but it jumps"),
     ({"ts": TS[::-1]}, "`ts` must increase"),
+    ({"ts": 1e3 * TS}, "`ts` must be in the unit of the `guess`, seconds"),
     ({"ts": TS[:9]}, r"`ts` must have shape \(150,\)"),
     ({"fixed": ("gamma",)}, "`fixed` must name some of epsilon, beta, v0, theta0, but got 'gam"),
     ({"fixed": ("epsilon", "beta", "v0", "theta0")}, "must leave something to fit"),

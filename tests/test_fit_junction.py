@@ -80,7 +80,7 @@ def test_what_the_model_has_not_is_left_out_and_named():
     # To 5 % of the largest voltage the bend's beginning is described.
     assert float(fit.model.resistance) == pytest.approx(R, rel=0.025)
     assert "more than 5%" in fit.notes[-1]
-    assert "|I| from" in fit.notes[-1]
+    assert "fitted without: |I| from" in fit.notes[-1]
 
 
 def test_a_robust_loss_forgives_outliers():
@@ -101,6 +101,7 @@ BAD = [
     ({"current": SWEEP[:500]}, "one axis of equal length"),
     ({"fixed": ("voltage",)}, "`fixed` must name some of critical_current, resistance"),
     ({"mask": np.ones(1200)}, "`mask` must be booleans"),
+    ({"voltage": np.linspace(1.0, 0.9, 1200)}, "must show where the junction leaves zero"),
     ({"rising": np.ones(3, bool)}, "`rising` must be booleans"),
     (
         {"current": 0.4 * SWEEP, "voltage": loop(JosephsonJunction(IC, R), 0.4 * SWEEP)},

@@ -79,8 +79,12 @@ def run(arguments: argparse.Namespace) -> None:
         fit = _fitted(recording, arguments)
         say(fit_report(path, recording, fit))
         model = recording.theta - np.asarray(fit.residuals)
-        columns = (recording.ts, recording.theta, model, np.asarray(fit.residuals))
+        columns = [recording.ts, recording.theta, model, np.asarray(fit.residuals)]
         names = "t,theta_rad,model_rad,residual_rad"
+        if recording.velocity is not None:
+            left = np.asarray(fit.velocity_residuals)
+            columns += [recording.velocity, recording.velocity - left, left]
+            names += ",velocity,velocity_model,velocity_residual"
         np.savetxt(
             folder / "fit.csv", np.column_stack(columns), "%.17g", ",", header=names, comments=""
         )
@@ -163,6 +167,6 @@ def _draw(recording: Recording, model: np.ndarray, path: Path, name: str) -> Non
         unit = recording.time_unit
         plot.recorded_motion(above, recording.ts, recording.theta, model, unit=unit)
         above.set(title=name, xlabel="")
-        above.legend(loc="upper right")
+        above.legend(loc="upper right", markerscale=3)
         plot.residuals(below, recording.ts, np.degrees(recording.theta - model), unit=unit)
         figure.savefig(path)

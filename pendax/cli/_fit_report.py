@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 
 from .._pendulum import Pendulum
+from .._results import Result
 from ..fit import Fit
 from ..josephson import JosephsonJunction
 from ._recording import Recording
@@ -19,12 +20,13 @@ KEPT = -4.0  # standard deviations of the run test, below which residuals are no
 def fit_report(path: Path, recording: Recording, fit: Fit[Pendulum]) -> str:
     """The parameters, then how well they describe the recording."""
     ts, unit = recording.ts, recording.time_unit
-    inverse = f"1/({unit})" if " " in unit else f"1/{unit}"
+    per = f"({unit})" if " " in unit else unit
+    inverse = f"1/{per}"
     units = {
         "epsilon": f"{inverse}²",
         "beta": inverse,
         "tau": f"{inverse}²",
-        "v0": f"rad {inverse}",
+        "v0": f"rad/{per}",
         "theta0": "rad",
         "offset": "rad",
     }
@@ -112,7 +114,7 @@ def quality(fit: Fit, rms: float, unit: str, beware: str) -> list[str]:
     lines = [
         f"residuals: rms {rms:.4g} {unit}, reduced χ² {float(fit.reduced_chi2):.4g}, "
         f"run test {runs:+.1f} standard deviations",
-        f"result: {str(fit.result).partition('<')[2].rstrip('>')}",
+        _ending(fit),
     ]
     if runs < KEPT:
         lines.append(
@@ -146,6 +148,12 @@ def _shared(fit: Fit, values: dict[str, float]) -> dict[str, Any]:
     }
 
 
+def _ending(fit: Fit) -> str:
+    """A fit that has converged may still be a bad one."""
+    said = str(fit.result).partition("<")[2].rstrip(">")
+    return "The iteration converged." if fit.result == Result.successful else said
+
+
 def _value(fit: Fit, name: str) -> float:
     found = getattr(fit if name in ("v0", "theta0", "offset") else fit.model, name)
     return float(found)
@@ -172,4 +180,4 @@ def _rounded(value: float, error: float) -> str:
     if not (0 < error < math.inf) or value == 0:
         return f"{value:.10g}"
     digits = math.ceil(math.log10(max(abs(value) / error, 1.0))) + 2
-    return f"{value:.{min(digits, 15)}g}"
+    return f"{value:#.{min(digits, 15)}g}".rstrip(".")

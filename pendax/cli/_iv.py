@@ -75,7 +75,7 @@ def run(arguments: argparse.Namespace) -> None:
             junction, model = _fitted(loop, arguments, say, folder / names[-1])
         else:
             model = None if junction is None else _voltages(junction, loop)
-        if junction is not None and model is not None:
+        if junction is not None and model is not None and not arguments.fit:
             say(_comparison(loop, junction, model))
         _write(loop, model, folder / "iv.csv")
         _draw(loop, junction, model, folder / "iv.png")

@@ -25,7 +25,7 @@ class Fit(eqx.Module, Generic[Model]):
     - `velocity_residuals`: those of the velocity, where it was given.
     - `history`: the loss after each step, the last one repeated.
     - `result`: how it ended.  *misfit*: it has converged, but the residuals keep their signs and
-      are more than a tenth of what there is to describe.
+      are more than a tenth of what there is to describe, the angles less a straight line.
     - `reduced_chi2`: the weighted sum of squares over the degrees of freedom, 1 for a model that
       is right and `sigma` that are.  Without `sigma` relative to the scatter from sample to
       sample, which of smooth deviations is small.

@@ -11,6 +11,7 @@ from .._results import Result, where
 from ._thin_qr import reduced, substituted
 
 LEFT = 1e-3  # of a standard error, that a converged fit may be off (Bates & Watts 1981)
+AT_ZERO = 1e-2  # of its standard error, that a positive parameter is nothing
 KEPT = -4.0  # standard deviations of the run test: not by chance
 GROSS = 0.1  # of the data's own spread
 
@@ -26,13 +27,15 @@ def judged(
     jacobian: Float[Array, "samples parameters"],
     count: Float[Array, ""],
     values: Float[Array, " parameters"],
+    positive: Bool[Array, " parameters"],
     loss: Callable | None,
 ) -> Judgement:
     """Of weighted residuals, 0 where there is no sample, and their slopes in the parameters.
 
     The covariance is s² (JᵀJ)⁻¹, of a loss ρ other than r²/2 with s² = ⟨ρ'²⟩/⟨ρ''⟩² (Huber 1973).
     What is left to go is the Gauss–Newton step: a small part of the standard errors, or of the
-    values themselves where there is no noise.
+    values themselves where there is no noise.  What is nothing and has to be `positive` can't go
+    below: the others have to be where they belong without it.
     """
     size = jacobian.shape[1]
     freedom = count - size
@@ -49,10 +52,17 @@ def judged(
     scatter = jnp.sum(pull**2) / freedom / stiffness**2
     covariance = scatter * (inverse @ inverse.T)
     errors = jnp.sqrt(jnp.diagonal(covariance))
-    left = jnp.abs(inverse @ found.y) / stiffness
+    left = inverse @ found.y
+    ends = positive & (values < AT_ZERO * errors) & (left > 0)
+    free = jnp.where(ends[None, :], 0, jacobian / norms[None, :])
+    rows = jnp.concatenate([free, jnp.diag(ends.astype(free.dtype))])
+    left = substituted(*reduced(rows, jnp.pad(pull, (0, size)))) / norms
     digits = float(jnp.finfo(values.dtype).eps) ** 0.6
-    converged = jnp.all(left <= LEFT * errors + digits * jnp.abs(values))
-    return Judgement(errors, covariance, converged)
+    near = jnp.abs(left) <= stiffness * (LEFT * errors + digits * jnp.abs(values))
+    # Of a loss that is bent downwards at most samples nothing is known.
+    known = jnp.where(stiffness > 0, 1, jnp.nan)
+    converged = jnp.all(near | ends) & (stiffness > 0)
+    return Judgement(errors * known, covariance * known, converged)
 
 
 class Goodness(NamedTuple):

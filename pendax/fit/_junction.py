@@ -9,22 +9,23 @@ import numpy as np
 from jaxtyping import ArrayLike
 
 from .._arrays import whole
+from .._results import Result
 from ..josephson import JosephsonJunction
 from ..josephson._iv_curve import autonomous
 from ._fit import Fit
 from ._judgement import ended, goodness
-from ._loop import LEVEL, crossings
 from ._loop_search import LoopSearch, Outcome, Points
 from ._measured_loop import (
     DESCRIBED,
     NAMES,
     Loop,
+    centred,
     edges_of,
-    is_hysteretic,
     loop_of,
     points_of,
     start_of,
     transition,
+    transitions,
 )
 from ._parameters import Parameters
 
@@ -85,20 +86,18 @@ def fit_junction(
     rounds the curve.
     """
     steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
+    fixed = (fixed,) if isinstance(fixed, str) else tuple(fixed)
     loop = loop_of(current, voltage, rising, mask)
+    loop, shift = centred(loop)
     largest = float(np.max(np.abs(loop.voltage[loop.there])))
-    rest = loop.there & (np.abs(loop.voltage) < LEVEL * largest)
-    shift = float(np.median(loop.voltage[rest])) if rest.any() else 0.0
-    loop = loop._replace(voltage=loop.voltage - shift)
-    found = crossings(*(x[loop.there] for x in loop[:3]))
-    hysteretic = is_hysteretic(found)
+    found, hysteretic = transitions(loop)
     edge = transition(found, hysteretic)
     if not (np.abs(loop.current[loop.there]) > edge).sum() > 8:
         raise ValueError(
             "Argument `current` must reach further beyond the transition to the running state, "
             f"above {edge:.4g} A."
         )
-    notes = []
+    notes: list[str] = []
     capacitive = hysteretic if guess is None else guess.capacitance is not None and hysteretic
     if not hysteretic:
         notes.append(
@@ -204,6 +203,9 @@ def _fit(
     kept = _kept(loop, points, used)
     found = goodness(jnp.asarray(residuals)[None], jnp.asarray(kept)[None], parameters.size, False)
     judgement = outcome.judgement
+    result = ended(judgement, outcome.loss, found.runs, jnp.asarray(rms))
+    if np.mean(np.abs(residuals[loop.there]) > DESCRIBED * largest) > 0.5:
+        result = Result.misfit
     errors = parameters.split(judgement.errors)
     return Fit(
         model=model,
@@ -214,10 +216,10 @@ def _fit(
         covariance=judgement.covariance,
         residuals=jnp.asarray(residuals),
         history=outcome.history,
-        result=ended(judgement, outcome.loss, found.runs, jnp.asarray(rms)),
+        result=result,
         reduced_chi2=found.reduced_chi2,
         runs=found.runs,
-        notes=(*notes, *_undescribed(loop, residuals, largest)),
+        notes=(*notes, *_undescribed(loop, residuals, largest, search.loss is None)),
     )
 
 
@@ -237,7 +239,7 @@ def _kept(loop: Loop, points: Points, used: np.ndarray) -> np.ndarray:
     return loop.there & used[nearest] & (loop.voltage * loop.current > 0)
 
 
-def _undescribed(loop: Loop, residuals: np.ndarray, largest: float) -> list[str]:
+def _undescribed(loop: Loop, residuals: np.ndarray, largest: float, trim: bool) -> list[str]:
     """Where more than a few neighbours are off, from … to …, in |I| and |V|."""
     off = loop.there & (np.abs(residuals) > DESCRIBED * largest)
     share = off.sum() / loop.there.sum()
@@ -257,7 +259,8 @@ def _undescribed(loop: Loop, residuals: np.ndarray, largest: float) -> list[str]
         )
     return [
         f"The model is more than {DESCRIBED:.0%} of the largest voltage off at {share:.0%} of the "
-        f"points{': ' if places else ''}{', '.join(places)}."
+        f"points{', which it was fitted without' if trim else ''}"
+        f"{': ' if places else ''}{', '.join(places)}."
     ]
 
 

@@ -32,14 +32,15 @@ class Points(NamedTuple):
 
 class Edges(NamedTuple):
     """Currents, A, where the voltage appears and where it vanishes, and how far measured
-    ones lie apart there; `there` is 0 where they were not measured.
+    ones lie apart there; `switched` and `retrapped` are 0 where they were not measured.
 
     For positive currents and for negative ones, sign left out.
     """
 
     switching: Pair
     retrapping: Pair
-    there: Pair
+    switched: Pair
+    retrapped: Pair
     gap: Float[Array, ""]
 
 
@@ -92,8 +93,8 @@ class LoopSearch(eqx.Module):
         jacobian, (r, off) = jax.jacfwd(of_values, has_aux=True)(values)
         count = share * jnp.sum(used).astype(r.dtype)
         if self.edges is not None:
-            count = count + 2 * jnp.sum(self.edges.there)
-        judgement = judged(r, jacobian, count, values, self.loss)
+            count = count + jnp.sum(self.edges.switched + self.edges.retrapped)
+        judgement = judged(r, jacobian, count, values, self.parameters.has_sign, self.loss)
         return Outcome(found.x, found.history, judgement, total(self.loss, r), off)
 
     def _junction(self, values) -> tuple[JosephsonJunction, Array]:
@@ -114,9 +115,11 @@ class LoopSearch(eqx.Module):
         if self.edges is not None:
             junction, zero = self._junction(values)
             unit, sign = junction.critical_current, jnp.asarray([1, -1], zero.dtype)
-            modelled = unit, junction.retrapping_current
-            measured = self.edges.switching, self.edges.retrapping
-            for model, data, error in zip(modelled, measured, (SHARP, SLOW), strict=True):
+            edges = self.edges
+            for model, data, there, error in (
+                (unit, edges.switching, edges.switched, SHARP),
+                (junction.retrapping_current, edges.retrapping, edges.retrapped, SLOW),
+            ):
                 unsure = jnp.hypot(error * unit, self.edges.gap / 12**0.5)
-                parts.append(self.edges.there * (data - sign * zero - model) / unsure)
+                parts.append(there * (data - sign * zero - model) / unsure)
         return jnp.concatenate(parts), all_off

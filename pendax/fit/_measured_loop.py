@@ -8,13 +8,16 @@ import numpy as np
 
 from .._arrays import concrete
 from ..josephson import REDUCED
-from ._loop import LEVEL, Crossings
+from ._loop import LEVEL, Crossings, crossings
 from ._loop import rising as rising_of
 from ._loop_search import Edges, Points
 
 NEAR = 0.2  # of the retrapping current, within which leakage and noise bend the curve
 ROUNDED = 0.6  # of the current with a twentieth of the voltage, where noise rounds it
 DESCRIBED = 0.05  # of the largest voltage, that a point which the model describes may be off
+FINE = 0.003  # of the largest voltage, zero where there is no noise
+JUMP = 0.15  # of the largest voltage, that only a junction with hysteresis switches by
+GUESSED = 0.5  # of Ic, a retrapping current to start from where none was measured
 HYSTERESIS = 0.02  # of the switching current, between it and the retrapping one
 
 NAMES = ("critical_current", "resistance", "capacitance", "current_offset")
@@ -75,17 +78,47 @@ def loop_of(current, voltage, rising, mask) -> Loop:
     return Loop(i, v, up, there)
 
 
-def is_hysteretic(found: Crossings) -> bool:
-    out, back = np.abs(found.switching), np.abs(found.retrapping)
-    return bool(np.any(out - back > HYSTERESIS * out))
+def centred(loop: Loop) -> tuple[Loop, float]:
+    """Without the voltage's offset: what is most frequent among the smallest third of currents."""
+    size = np.abs(loop.current)
+    small = loop.there & (size <= np.max(size[loop.there]) / 3)
+    v = loop.voltage[small if small.sum() > 8 else loop.there]
+    counts, edges = np.histogram(v, bins=100)
+    k = int(np.argmax(counts))
+    shift = float(np.median(v[(v >= edges[k]) & (v <= edges[k + 1])]))
+    return loop._replace(voltage=loop.voltage - shift), shift
+
+
+def transitions(loop: Loop) -> tuple[Crossings, bool]:
+    """Where zero voltage ends, and whether there is hysteresis.
+
+    With hysteresis zero is what noise, by third differences, does not leave: a retrapping current
+    far below the largest has a voltage far below it, too.  Without, where noise rounds the curve,
+    a twentieth of the largest.
+    """
+    i, v, up = (x[loop.there] for x in loop[:3])
+    largest = float(np.max(np.abs(v)))
+    noise = np.median(np.abs(np.diff(v, 3))) / (0.6745 * np.sqrt(20))
+    fine = crossings(i, v, up, float(np.clip(10 * noise / largest, FINE, LEVEL)))
+    if not np.isfinite(fine.switching).any():
+        raise ValueError(
+            "Arguments `current` and `voltage` must show where the junction leaves zero voltage, "
+            "with a current that grows from small to large: no such transition was found."
+        )
+    out, back = means(fine)
+    if math.isnan(back):  # the jump alone can tell
+        return fine, fine.jump > JUMP * largest
+    if out - back > HYSTERESIS * out:
+        return fine, True
+    return crossings(i, v, up), False
 
 
 def edges_of(found: Crossings) -> Edges:
-    """What was measured of both on each side; 1 stands where it wasn't."""
+    """What was measured on each side; 1 stands where it wasn't."""
     both = np.abs([found.switching, found.retrapping])
-    there = np.isfinite(both).all(0)
-    out, back = np.where(there, both, np.nanmean(both[:, there]) if there.any() else 1.0)
-    return Edges(*(jnp.asarray(x, float) for x in (out, back, there, found.gap)))
+    there = np.isfinite(both)
+    values = (*np.where(there, both, 1.0), *there, found.gap)
+    return Edges(*(jnp.asarray(x, float) for x in values))
 
 
 def points_of(loop: Loop, largest: float, most: int) -> Points:
@@ -106,7 +139,8 @@ def start_of(
 ) -> dict[str, float]:
     """Read off the loop: Ic where it switches, C from where it retraps, R where most points are."""
     i, v = np.abs(points.current), np.abs(points.voltage)
-    out, back = (float(np.nanmean(np.abs(x))) for x in found[:2])
+    out, back = means(found)
+    back = GUESSED * out if math.isnan(back) else back
     beyond = i > edge
     ohms = v[beyond] / np.sqrt(i[beyond] ** 2 - (back if capacitive else out) ** 2)
     agree = np.abs(ohms[:, None] - ohms) < 2 * DESCRIBED * ohms
@@ -126,6 +160,13 @@ def start_of(
 
 def transition(found: Crossings, hysteretic: bool) -> float:
     """The current from which on the curve is that of the model."""
-    if hysteretic:
-        return (1 + NEAR) * float(np.nanmean(np.abs(found.retrapping)))
-    return (1 + ROUNDED) * float(np.nanmean(np.abs(found.switching)))
+    out, back = means(found)
+    back = GUESSED * out if math.isnan(back) else back
+    return (1 + NEAR) * back if hysteretic else (1 + ROUNDED) * out
+
+
+def means(found: Crossings) -> tuple[float, float]:
+    """Of both sides, where the voltage appears and where it vanishes; NaN if none was measured."""
+    sizes = (np.abs(x)[np.isfinite(x)] for x in (found.switching, found.retrapping))
+    out, back = (float(x.mean()) if x.size else math.nan for x in sizes)
+    return out, back

@@ -4,7 +4,7 @@ from typing import Any
 
 import equinox as eqx
 import jax.numpy as jnp
-from jaxtyping import Array, Float
+from jaxtyping import Array, Bool, Float
 
 Vector = Float[Array, " parameters"]
 
@@ -25,6 +25,13 @@ class Parameters(eqx.Module):
     def size(self) -> int:
         return sum(x.size for x in self.start.values())
 
+    @property
+    def has_sign(self) -> Bool[Array, " parameters"]:
+        """Of each element, whether it has to be positive."""
+        return self.joined(
+            {name: jnp.full(x.shape, name in self.positive) for name, x in self.start.items()}
+        )
+
     def split(self, vector: Vector) -> dict[str, Float[Array, "..."]]:
         """The elements of one vector as the arrays they are."""
         parts, first = {}, 0
@@ -34,7 +41,7 @@ class Parameters(eqx.Module):
             first += start.size
         return parts
 
-    def joined(self, parts: dict[str, Any]) -> Vector:
+    def joined(self, parts: dict[str, Any]) -> Array:
         return jnp.concatenate([jnp.ravel(parts[name]) for name in self.names])
 
     def at(self, x: Vector) -> Vector:

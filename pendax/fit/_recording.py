@@ -1,5 +1,6 @@
 """A recorded motion: what is wrong with it, and the state that it seems to start in."""
 
+from itertools import pairwise
 from typing import NamedTuple
 
 import jax
@@ -7,7 +8,7 @@ import jax.numpy as jnp
 import numpy as np
 from jaxtyping import Array, Bool, Float
 
-from .._arrays import common, concrete, floating, require
+from .._arrays import aligned, common, concrete, floating, require
 from .._pendulum import Pendulum
 from ._thin_qr import reduced, substituted
 from ._turns import turning_points
@@ -41,15 +42,21 @@ def recording_of(ts, theta, velocity, sigma, mask, guess: Pendulum, unwrap: bool
             "Argument `sigma` must be a pair, of `theta` and of `velocity`, where both are fitted, "
             "and one where `theta` is alone."
         )
+    given = {"ts": ts, "theta": theta, "velocity": velocity}
+    given = {name: x for name, x in given.items() if x is not None}
+    for name, x in given.items():
+        aligned(**{name: x})  # an array of real numbers
     shape = jnp.shape(theta)
     if len(shape) not in (1, 2) or 0 in shape:
         raise ValueError(
             f"Argument `theta` must have one axis of samples, or two, runs first, but got {shape}."
         )
-    given = {"ts": ts, "theta": theta, "velocity": velocity}
     for name, x in given.items():
-        if x is not None and jnp.shape(x) not in (shape, shape[-1:]):
-            raise ValueError(f"Argument `{name}` must have shape {shape}, but got {jnp.shape(x)}.")
+        if jnp.shape(x) not in (shape, shape[-1:]):
+            raise ValueError(
+                f"Argument `{name}` must have shape {shape}, that of `theta` (runs first, samples "
+                f"last), but got {jnp.shape(x)}."
+            )
     there = jnp.ones(shape, bool) if mask is None else jnp.asarray(mask)
     if there.dtype != bool or there.shape != shape:
         raise ValueError(
@@ -58,7 +65,7 @@ def recording_of(ts, theta, velocity, sigma, mask, guess: Pendulum, unwrap: bool
         )
 
     def rows(x):
-        x = jnp.asarray(common(x=x)[0], floating(1.0))
+        x = jnp.asarray(common(sigma=x)[0], floating(1.0))
         return jnp.broadcast_to(x, shape).reshape(-1, shape[-1])
 
     ts, theta = rows(ts), rows(theta)
@@ -67,7 +74,9 @@ def recording_of(ts, theta, velocity, sigma, mask, guess: Pendulum, unwrap: bool
     times, angles, known = (concrete(x) for x in (ts, theta, there))
     if times is not None and angles is not None and known is not None:
         speeds = None if velocity is None else concrete(velocity)
-        _require_recording(times, angles, speeds, known, callable(guess.tau), unwrap)
+        epsilon = concrete(guess.epsilon)
+        rate = 0.0 if epsilon is None else float(np.sqrt(epsilon))
+        _require_recording(times, angles, speeds, known, guess.tau, unwrap, rate)
     if unwrap:
         theta = _unwrapped(theta, there)
     one = jnp.ones_like(theta)
@@ -123,8 +132,9 @@ def _require_recording(
     theta: np.ndarray,
     velocity: np.ndarray | None,
     mask: np.ndarray,
-    driven: bool,
+    tau: object,
     unwrap: bool,
+    rate: float,
 ) -> None:
     """ValueError for what can't be fitted, or is not what it is taken for."""
     for name, x in (("ts", ts), ("theta", theta), ("velocity", velocity)):
@@ -155,37 +165,59 @@ def _require_recording(
             raise ValueError(
                 f"Argument `theta` must move, but it is {x[0]:.6g} at all times of a run."
             )
-        _require_radians(x, driven)
+        _require_resolved(t, rate)
+        _require_radians(x, tau)
         if not unwrap:
             _require_unwrapped(t, x)
 
 
-def _require_radians(x: np.ndarray, driven: bool) -> None:
-    """Nothing that a constant torque drives swings through more than 2π and back again.
+def _require_resolved(t: np.ndarray, rate: float) -> None:
+    """Samples a small-angle period apart tell nothing of a phase."""
+    turns = float(np.median(np.diff(t))) * rate / (2 * np.pi)
+    if turns > 1:
+        raise ValueError(
+            f"Argument `ts` must be in the unit of the `guess`, seconds if ε is in 1/s², but its "
+            f"steps are {turns:.3g} small-angle periods 2π/√ε long."
+        )
 
-    Half a turn more for noise.
+
+def _require_radians(x: np.ndarray, tau: object) -> None:
+    """No pendulum swings to and fro through more than 2π; half a turn more is for noise.
+
+    A constant torque turns back once what is thrown against it, and a torque that varies may do
+    anything, but not ten turns at a time.
     """
-    turns = np.diff(x[turning_points(x, 0.1)])
-    back_and_forth = turns.size > 1 and min(-turns.min(), turns.max()) > 3 * np.pi
-    # Whatever a measured torque does, it doesn't do it 10 turns at a time.
-    if back_and_forth and (not driven or min(-turns.min(), turns.max()) > 20 * np.pi):
+    swings = np.diff(x[turning_points(x, 0.1)])
+    least = (20 if callable(tau) else 3) * np.pi
+    big = np.abs(swings) > least
+    several = 1 if tau is None or callable(tau) else 2
+    together = (
+        np.convolve(big, np.ones(several + 1), "valid") if big.size > several else np.zeros(1)
+    )
+    if together.max() > several:
         raise ValueError(
             "Argument `theta` must be in radians, but it swings through "
-            f"{turns.max():.4g} and back through {-turns.min():.4g}, which no pendulum does: "
+            f"{swings.max():.4g} and back through {-swings.min():.4g}, which no pendulum does: "
             "degrees? Pass numpy.radians(theta)."
         )
 
 
 def _require_unwrapped(t: np.ndarray, x: np.ndarray) -> None:
+    """A jump by a turn that its neighbours know nothing of, or two in the same direction."""
     steps = np.diff(x)
+    quiet = np.diff(t) < 2.5 * np.median(np.diff(t))
     for turn, unit in ((2 * np.pi, "radians"), (360.0, "degrees")):
-        jumps = np.abs(np.abs(steps) - turn) < 0.25 * turn
-        # Samples next to each other, and a jump that its neighbours know nothing of.
-        near = np.diff(t) < 2.5 * np.median(np.diff(t))
-        quiet = np.median(np.abs(steps)) < 0.2 * turn
-        inside = np.ptp(x) < 1.05 * turn
-        if quiet and inside and (jumps & near).any():
-            i = int(np.flatnonzero(jumps & near)[0])
+        if np.ptp(x) > 1.05 * turn:
+            continue
+        jumps = np.flatnonzero((np.abs(np.abs(steps) - turn) < 0.25 * turn) & quiet)
+        alone = [
+            i
+            for i in jumps
+            if 0 < i < steps.size - 1 and np.abs(steps[[i - 1, i + 1]]).max() < 0.1 * turn
+        ]
+        onwards = [i for i, j in pairwise(jumps) if steps[i] * steps[j] > 0 and j > i + 1]
+        if alone or onwards:
+            i = int((alone or onwards)[0])
             raise ValueError(
                 f"Argument `theta` must not be wrapped, but it jumps from {x[i]:.4g} to "
                 f"{x[i + 1]:.4g} in {unit} between two samples: pass `unwrap=True` if these are "

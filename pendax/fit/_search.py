@@ -64,7 +64,7 @@ class Search(eqx.Module):
 
     def _one(self, x: Vector) -> Found:
         data, full = self.recording, self.ends[-1]
-        spread = _centred(jnp.where(data.there, data.theta, 0), data.weight)
+        spread = _detrended(data)
         samples = jnp.sum(data.there).astype(x.dtype)
         reserve = RESERVE * jnp.sqrt(jnp.sum(spread**2) / samples)
 
@@ -110,7 +110,7 @@ class Search(eqx.Module):
         return Found(
             values,
             history,
-            judged(r, jacobian, count, values, self.loss),
+            judged(r, jacobian, count, values, self.parameters.has_sign, self.loss),
             goodness(r.reshape(there.shape), there, values.size, self.weighted),
             theta,
             velocity,
@@ -135,7 +135,7 @@ class Search(eqx.Module):
                 return tuple(motion(epsilon, t, v0, theta0))
             # Steps that no stretch asks for are not taken.
             short = isinstance(self.method, TaylorSeries)
-            times = jnp.minimum(ts, end) if short else ts
+            times = jnp.minimum(ts, ts[0] + end) if short else ts
             return self.method(scene, times, v0, theta0, ts[0])[:2]
 
         theta, v = jax.vmap(one)(ts, at["v0"], at["theta0"])
@@ -145,17 +145,25 @@ class Search(eqx.Module):
         """Weighted; 0 beyond `end` and where nothing was measured.  And the motion."""
         data = self.recording
         theta, v = self._model(values, end)
-        used = data.there & (data.ts <= end)
+        used = data.there & (data.ts - data.ts[:, :1] <= end)
         parts = [jnp.where(used, (data.theta - theta) * data.weight, 0)]
         if data.velocity is not None and data.velocity_weight is not None:
             parts.append(jnp.where(used, (data.velocity - v) * data.velocity_weight, 0))
         return jnp.concatenate([jnp.ravel(x) for x in parts]), (theta, v)
 
 
-def _centred(x, weight):
-    total = jnp.sum(weight**2, 1, keepdims=True)
-    mean = jnp.sum(x * weight**2, 1, keepdims=True) / total
-    return (x - mean) * weight
+def _detrended(data: Recording):
+    """Weighted angles less the straight line through them: what there is to describe."""
+
+    def centred(x):
+        x = jnp.where(data.there, x, 0)
+        mean = jnp.sum(x * data.weight**2, 1, keepdims=True) / total
+        return jnp.where(data.there, x - mean, 0) * data.weight
+
+    total = jnp.sum(data.weight**2, 1, keepdims=True)
+    t, theta = centred(data.ts), centred(data.theta)
+    slope = jnp.sum(t * theta, 1, keepdims=True) / jnp.sum(t * t, 1, keepdims=True)
+    return theta - slope * t
 
 
 def rooted(loss: Callable, r: Float[Array, " residuals"]) -> Float[Array, " residuals"]:

@@ -90,11 +90,11 @@ def fit_trajectory(
     noise; `result` is *not converged* where it may be 1e-3 of them off.
     """
     terms = _terms(guess)
+    fixed = (fixed,) if isinstance(fixed, str) else tuple(fixed)
     starts = whole("starts", starts, 1)
     steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
-    dtype = floating(ts, theta, *terms.values())
-    shape = jnp.shape(theta)
     recording = recording_of(ts, theta, velocity, sigma, mask, guess, unwrap)
+    dtype, shape = floating(ts, theta, *terms.values()), jnp.shape(theta)
     held, parameters = _parameters(
         terms, recording, {"v0": v0, "theta0": theta0, "offset": offset}, fixed
     )
@@ -204,19 +204,18 @@ def _require_enough(mask, recording: Recording, parameters: Parameters) -> None:
 
 
 def _ends(recording: Recording, epsilon) -> Float[Array, " stages"]:
-    """Of stretches each twice as long as the one before, up to all of the recording.
+    """Of stretches from each run's first time on, each twice as long as the one before, up to all.
 
     A phase known over one of them is known well enough over the next to find the right turn.
     """
-    first = jnp.min(recording.ts[:, 0])
     span = jnp.max(recording.ts[:, -1] - recording.ts[:, 0])
     radians = concrete(span * jnp.sqrt(epsilon))
     if radians is None:
-        stages = int(np.ceil(np.log2(max(2, recording.ts.shape[1] / 8))))
+        stages = int(np.ceil(np.log2(max(2, recording.ts.shape[1] / 5))))
     else:
         stages = 1 + int(np.ceil(np.log2(np.clip(float(radians) / FIRST, 1, 2.0**20))))
     shares = jnp.exp2(jnp.arange(1 - stages, 1, dtype=span.dtype))
-    return first + span * shares
+    return jnp.where(shares < 1, span * shares, jnp.inf)
 
 
 def _method(guess: Pendulum, recording: Recording, start: dict[str, Array]) -> Method | None:
