@@ -10,6 +10,7 @@ import optax
 import pytest
 
 from pendax import Pendulum, Result, cycles, fit_frequency, fit_trajectory, simulate
+from pendax.fit._recording import recording_of
 
 TRUE = Pendulum(4.0, 0.12)
 TS = np.linspace(0.0, 15.0, 150)
@@ -179,6 +180,56 @@ def test_a_model_that_lacks_something_shows_it():
     fit = fit_trajectory(ts, theta, Pendulum(4.5, 0.05))
     assert float(fit.runs) < -10
     assert float(fit.reduced_chi2) > 10
+
+
+def test_runs_may_lie_apart_in_time():
+    """Closed form, two runs an hour apart; each counts from its own first time."""
+    free = Pendulum(4.0)
+    theta = np.stack([motion(free, 1.0, 2.0), motion(free, -4.0, 0.5)])
+    fit = fit_trajectory(np.stack([TS, TS + 3600.1]), theta, Pendulum(4.8))
+    assert fit.result == Result.successful
+    np.testing.assert_allclose(fit.v0, [1.0, -4.0], rtol=1e-8)
+    np.testing.assert_allclose(fit.model.epsilon, 4.0, rtol=1e-8)
+
+
+def test_a_damping_that_is_not_there():
+    """β can't go below 0: at nothing, the fit has converged."""
+    noise = 0.01 * np.random.default_rng(1).normal(size=TS.size)
+    # Negative damping would describe this best.
+    growing = motion(Pendulum(4.0)) * (1 + 3e-4 * TS) + noise
+    fit = fit_trajectory(TS, growing, Pendulum(4.5, 0.1))
+    assert fit.result == Result.successful
+    assert float(fit.model.beta) < 0.01 * float(fit.errors["beta"])
+    assert 0 < float(fit.errors["beta"]) < 0.01
+
+
+def test_a_loss_bent_downwards_says_nothing():
+    """Residuals of 30 stated errors: most samples are outliers."""
+    theta = motion() + 0.01 * np.random.default_rng(4).normal(size=TS.size)
+    fit = fit_trajectory(
+        TS,
+        theta,
+        Pendulum(4.5, 0.1),
+        sigma=0.01 / 30,
+        loss=lambda r: jnp.log1p(r * r / 2),
+        steps=60,
+    )
+    assert fit.result != Result.successful
+
+
+@pytest.mark.parametrize(
+    ("scene", "v0", "theta0", "ts"),
+    [
+        (Pendulum(1.0, 0.05, -2.0), 15.0, 0.0, np.linspace(0, 10, 201)),
+        (Pendulum(1.0, 1.5), 9.0, 0.0, np.arange(0, 30, 2.0)),
+        (Pendulum(1.0), 0.0, 3.1415, np.arange(0, 120, 4.0)),
+    ],
+    ids=["thrown against a torque", "captured after a turn", "next to the top"],
+)
+def test_no_false_alarm(scene, v0, theta0, ts):
+    """Neither degrees nor wrapped, however coarsely it is sampled."""
+    theta = motion(scene, v0, theta0, ts)
+    assert recording_of(ts, theta, None, None, None, scene, False).theta.shape == (1, ts.size)
 
 
 BAD = [

@@ -92,6 +92,25 @@ def test_a_robust_loss_forgives_outliers():
     assert off[0] < 1e-3 < 1e-2 < off[1]
 
 
+def test_retrapping_far_below_the_largest_voltage():
+    """β_c = 150: the branch retraps at a tenth of Ic; parts of loops, offsets of either kind."""
+    true = of_beta_c(150.0)
+    noise = 0.001 * IC * R * np.random.default_rng(5).normal(size=SWEEP.size)
+    voltage = loop(true) + noise
+    rises = ~FALLS
+    for current, measured in (
+        (SWEEP, voltage + 0.3 * IC * R),
+        (SWEEP + 0.2 * IC, voltage),
+        (SWEEP[rises], voltage[rises]),
+    ):
+        fit = fit_junction(current, measured)
+        assert fit.result == Result.successful
+        assert float(fit.model.critical_current) == pytest.approx(IC, rel=0.02)
+        assert float(fit.model.resistance) == pytest.approx(R, rel=0.002)
+        assert inside(fit, "capacitance", float(true.capacitance))
+        assert 0 < float(fit.errors["capacitance"]) < 0.4 * float(true.capacitance)
+
+
 BAD = [
     ({"current": SWEEP[:9], "voltage": SWEEP[:9]}, "16 or more points"),
     ({"voltage": np.where(SWEEP > IC, np.nan, SWEEP)}, "`voltage` must be finite, but got nan at"),
@@ -101,7 +120,10 @@ BAD = [
     ({"current": SWEEP[:500]}, "one axis of equal length"),
     ({"fixed": ("voltage",)}, "`fixed` must name some of critical_current, resistance"),
     ({"mask": np.ones(1200)}, "`mask` must be booleans"),
-    ({"voltage": np.linspace(1.0, 0.9, 1200)}, "must show where the junction leaves zero"),
+    (
+        {"current": SWEEP[:300], "voltage": loop(JosephsonJunction(IC, R))[:300]},
+        "must show where the junction leaves zero",
+    ),
     ({"rising": np.ones(3, bool)}, "`rising` must be booleans"),
     (
         {"current": 0.4 * SWEEP, "voltage": loop(JosephsonJunction(IC, R), 0.4 * SWEEP)},

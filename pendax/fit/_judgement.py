@@ -29,6 +29,7 @@ def judged(
     values: Float[Array, " parameters"],
     positive: Bool[Array, " parameters"],
     loss: Callable | None,
+    variances: Float[Array, " samples"] | None = None,
 ) -> Judgement:
     """Of weighted residuals, 0 where there is no sample, and their slopes in the parameters.
 
@@ -36,6 +37,8 @@ def judged(
     What is left to go is the Gauss–Newton step: a small part of the standard errors, or of the
     values themselves where there is no noise.  What is nothing and has to be `positive` can't go
     below: the others have to be where they belong without it.
+
+    `variances`: of residuals that don't all scatter alike.
     """
     size = jacobian.shape[1]
     freedom = count - size
@@ -51,6 +54,9 @@ def judged(
     inverse = substituted(found.r, jnp.eye(size, dtype=norms.dtype)) / norms[:, None]
     scatter = jnp.sum(pull**2) / freedom / stiffness**2
     covariance = scatter * (inverse @ inverse.T)
+    if variances is not None:
+        moves = inverse @ (inverse.T @ jacobian.T)
+        covariance = (moves * variances[None, :]) @ moves.T
     errors = jnp.sqrt(jnp.diagonal(covariance))
     left = inverse @ found.y
     ends = positive & (values < AT_ZERO * errors) & (left > 0)

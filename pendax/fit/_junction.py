@@ -91,6 +91,11 @@ def fit_junction(
     loop, shift = centred(loop)
     largest = float(np.max(np.abs(loop.voltage[loop.there])))
     found, hysteretic = transitions(loop)
+    # About what both sides have in common, or the sign of a current may be the wrong one.
+    middle = float(np.mean(found.switching)) if np.isfinite(found.switching).all() else 0.0
+    if middle:
+        loop = loop._replace(current=loop.current - middle)
+        found, hysteretic = transitions(loop)
     edge = transition(found, hysteretic)
     if not (np.abs(loop.current[loop.there]) > edge).sum() > 8:
         raise ValueError(
@@ -125,7 +130,7 @@ def fit_junction(
         steps,
     )
     outcome, used = _trimmed(search, edge, loss is None, progress)
-    return _fit(search, outcome, used, loop, shift, largest, notes)
+    return _fit(search, outcome, used, loop, (middle, shift), largest, notes)
 
 
 def _parameters(start: dict[str, float], held: dict[str, float], fixed) -> Parameters:
@@ -189,7 +194,7 @@ def _independent(off: np.ndarray) -> float:
 
 
 def _fit(
-    search, outcome: Outcome, used, loop: Loop, shift, largest, notes
+    search, outcome: Outcome, used, loop: Loop, shifts, largest, notes
 ) -> Fit[JosephsonJunction]:
     parameters = search.parameters
     values = search.held | parameters.split(parameters.at(outcome.x))
@@ -211,7 +216,7 @@ def _fit(
         model=model,
         v0=None,
         theta0=None,
-        offset=jnp.asarray([zero, shift]),
+        offset=jnp.asarray([shifts[0] + zero, shifts[1]]),
         errors=errors,
         covariance=judgement.covariance,
         residuals=jnp.asarray(residuals),

@@ -94,8 +94,25 @@ class LoopSearch(eqx.Module):
         count = share * jnp.sum(used).astype(r.dtype)
         if self.edges is not None:
             count = count + jnp.sum(self.edges.switched + self.edges.retrapped)
-        judgement = judged(r, jacobian, count, values, self.parameters.has_sign, self.loss)
+        judgement = judged(
+            r,
+            jacobian,
+            count,
+            values,
+            self.parameters.has_sign,
+            self.loss,
+            self._variances(r, count),
+        )
         return Outcome(found.x, found.history, judgement, total(self.loss, r), off)
+
+    def _variances(self, r, count):
+        """Of voltages as they scatter, of currents of transition as they were resolved."""
+        if self.edges is None:
+            return None
+        bins = self.points.current.size
+        edges = jnp.sum(self.edges.switched + self.edges.retrapped)
+        scatter = jnp.sum(r[:bins] ** 2) / jnp.maximum(count - edges - 1, 1)
+        return jnp.where(jnp.arange(r.size) < bins, scatter, 1)
 
     def _junction(self, values) -> tuple[JosephsonJunction, Array]:
         at = self.held | self.parameters.split(values)

@@ -153,8 +153,7 @@ def start_of(
         leaves = guess.critical_current, guess.resistance, guess.capacitance
         given: dict[str, Any] = dict(zip(NAMES, leaves, strict=False))
         start = {name: float(given[name]) for name in start}
-    signs = np.array(found.switching)
-    start["current_offset"] = float(np.mean(signs)) if np.isfinite(signs).all() else 0.0
+    start["current_offset"] = 0.0
     return start
 
 

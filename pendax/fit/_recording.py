@@ -210,14 +210,13 @@ def _require_unwrapped(t: np.ndarray, x: np.ndarray) -> None:
         if np.ptp(x) > 1.05 * turn:
             continue
         jumps = np.flatnonzero((np.abs(np.abs(steps) - turn) < 0.25 * turn) & quiet)
-        alone = [
-            i
-            for i in jumps
-            if 0 < i < steps.size - 1 and np.abs(steps[[i - 1, i + 1]]).max() < 0.1 * turn
-        ]
+        inner = jumps[(jumps > 0) & (jumps < steps.size - 1)]
+        beside = np.stack([steps[inner - 1], steps[inner + 1]]) * np.sign(steps[inner])
+        # Against the motion before and after it.
+        alone = inner[(np.abs(beside).max(0, initial=0) < 0.1 * turn) & (beside.sum(0) < 0)]
         onwards = [i for i, j in pairwise(jumps) if steps[i] * steps[j] > 0 and j > i + 1]
-        if alone or onwards:
-            i = int((alone or onwards)[0])
+        if alone.size or onwards:
+            i = int([*alone, *onwards][0])
             raise ValueError(
                 f"Argument `theta` must not be wrapped, but it jumps from {x[i]:.4g} to "
                 f"{x[i + 1]:.4g} in {unit} between two samples: pass `unwrap=True` if these are "
