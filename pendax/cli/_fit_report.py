@@ -9,12 +9,12 @@ import numpy as np
 from .._pendulum import Pendulum
 from .._results import Result
 from ..fit import Fit
+from ..fit._judgement import KEPT
 from ..josephson import JosephsonJunction
 from ._recording import Recording
 
 _NOISE = "and the standard errors, which take them for noise, are too small"
 _FEWER = "for which the standard errors allow"
-KEPT = -4.0  # standard deviations of the run test, below which residuals are no noise
 
 
 def fit_report(path: Path, recording: Recording, fit: Fit[Pendulum]) -> str:
@@ -143,15 +143,18 @@ def _shared(fit: Fit, values: dict[str, float]) -> dict[str, Any]:
         "covariance": np.asarray(fit.covariance).tolist(),
         "reduced_chi2": float(fit.reduced_chi2),
         "runs": float(fit.runs),
-        "result": str(fit.result).partition("<")[2].rstrip(">"),
+        "result": _said(fit),
         "notes": list(fit.notes),
     }
 
 
 def _ending(fit: Fit) -> str:
     """A fit that has converged may still be a bad one."""
-    said = str(fit.result).partition("<")[2].rstrip(">")
-    return "The iteration converged." if fit.result == Result.successful else said
+    return "The iteration converged." if fit.result == Result.successful else _said(fit)
+
+
+def _said(fit: Fit) -> str:
+    return str(fit.result).partition("<")[2].rstrip(">")
 
 
 def _value(fit: Fit, name: str) -> float:

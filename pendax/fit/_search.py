@@ -80,7 +80,7 @@ class Search(eqx.Module):
             most = jnp.where(end < full, min(ROUGH, self.steps), self.steps)
             minimum = least_squares(residuals, x, self.steps, most)
             if self.progress is not None:
-                jax.debug.callback(self.progress, 1 / self.ends.size)
+                jax.debug.callback(self.progress, 1 / (self.ends.size * self.starts))
             return jnp.where(jnp.isfinite(minimum.x), minimum.x, x), minimum.history
 
         # Less and less of it: where the fit ends up it would pull it off.
