@@ -101,6 +101,15 @@ def test_state_from_the_data_offset_and_gaps():
     np.testing.assert_allclose(short.model.epsilon, 4.0, rtol=1e-8)
 
 
+def test_results_have_the_dtype_of_what_was_given():
+    """Whatever the default precision: a guess of plain numbers is weak."""
+    narrow = [np.asarray(x, np.float32) for x in (TS, motion())]
+    fit = fit_trajectory(*narrow, Pendulum(5.0, 0.0), v0=1.0, theta0=2.0)
+    arrays = [x for x in jax.tree.leaves(fit) if jnp.issubdtype(x.dtype, jnp.floating)]
+    assert {x.dtype for x in arrays} == {np.dtype(np.float32)}
+    np.testing.assert_allclose(fit.model.epsilon, 4.0, rtol=1e-4)
+
+
 def test_what_is_fixed_stays():
     fixed = ("beta", "theta0")
     fit = fit_trajectory(TS, motion(), Pendulum(5.0, 0.12), theta0=2.0, fixed=fixed)

@@ -94,7 +94,7 @@ def fit_trajectory(
     starts = whole("starts", starts, 1)
     steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
     recording = recording_of(ts, theta, velocity, sigma, mask, guess, unwrap)
-    dtype, shape = floating(ts, theta, *terms.values()), jnp.shape(theta)
+    dtype, shape = floating(ts, theta, *(getattr(guess, name) for name in terms)), jnp.shape(theta)
     held, parameters = _parameters(
         terms, recording, {"v0": v0, "theta0": theta0, "offset": offset}, fixed
     )
