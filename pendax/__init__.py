@@ -1,7 +1,7 @@
 """The pendulum beyond small angles, exact and differentiable, in JAX.
 
-    the scene        Pendulum, Pendulum.from_si, energy, potential, velocity, tension,
-                     slack_angle, fixed_points
+    the scene        Pendulum, Pendulum.from_si, SampledTorque, energy, potential,
+                     velocity, tension, slack_angle, fixed_points
     its motion       simulate, condition, time_to, frequency, period, amplitude
     its end          settle, retrapping_torque, mean_velocity, critical_torque,
                      well_boundaries
@@ -47,6 +47,7 @@ from ._small_angle import period_series as period_series
 from ._small_angle import small_angle as small_angle
 from ._spectrum import power_spectrum as power_spectrum
 from ._time_to import time_to as time_to
+from ._torque import SampledTorque as SampledTorque
 from .fate import Settled as Settled
 from .fate import critical_torque as critical_torque
 from .fate import mean_velocity as mean_velocity

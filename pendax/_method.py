@@ -12,6 +12,7 @@ from jaxtyping import Array
 
 from ._pendulum import Pendulum
 from ._results import Result
+from ._torque import SampledTorque
 from .taylor import (
     Scene,
     State,
@@ -33,7 +34,7 @@ class Method(eqx.Module):
 
 
 class TaylorSeries(Method):
-    """For β and τ that don't depend on time."""
+    """For terms that don't depend on time, or as samples do."""
 
     rtol: float = eqx.field(static=True)
     atol: float = eqx.field(static=True)
@@ -43,16 +44,19 @@ class TaylorSeries(Method):
     name: str = eqx.field(static=True, default="Taylor series")
 
     def __call__(self, scene: Pendulum, times, v0, theta0, t0) -> Any:
-        terms = Scene(scene.epsilon, scene.beta, scene.tau)
+        terms = Scene(scene.epsilon, scene.beta, scene.tau, scene.dry)
         start, since = State(theta0, v0), times - t0
         most = budget(terms, start, since)
         if self.max_steps is not None:
             most = self.max_steps
+        # Where there is no clock, time begins with the motion: differences keep their digits.
+        clock = isinstance(scene.tau, SampledTorque)
         states, end = marched(
             terms,
             start,
-            since,
+            times if clock else since,
             most,
+            t0=t0 if clock else None,
             rtol=self.rtol,
             atol=self.atol,
             stiff=self.stiff,
@@ -117,7 +121,11 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
     """
     span = None if _hidden(ts, t0) else _span(ts, t0)
     named = ("stepsize_controller", "dt0", "adjoint")
-    if not callable(pendulum.tau) and solver is None and all(options[x] is None for x in named):
+    plain = solver is None and all(options[x] is None for x in named)
+    _require_switching(pendulum, plain, span)
+    backwards = span is not None and bool(np.any(span < 0))
+    sampled = isinstance(pendulum.tau, SampledTorque) and not backwards
+    if (not callable(pendulum.tau) or sampled) and plain:
         # Who speaks of steps wants them.
         free = all(options[x] is None for x in ("rtol", "atol", "max_steps"))
         if free and span is not None and _barely_damped(pendulum, span, dtype):
@@ -129,7 +137,8 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
             rtol=rtol,
             atol=options["atol"] or rtol,
             max_steps=None if most is None else jnp.asarray(min(most, 2**31 - 128), jnp.int32),
-            stiff=_overdamped(pendulum) is not False,
+            # A line's end would start another relaxation.
+            stiff=not sampled and _overdamped(pendulum) is not False,
             moving_times=span is None,
         )
     import diffrax as dfx
@@ -141,6 +150,27 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
     if options["max_steps"] is None:
         options = options | {"max_steps": _enough(pendulum, span, v0)}
     return Diffrax(solver=solver, options=options, name=type(solver).__name__)
+
+
+def _require_switching(pendulum: Pendulum, plain: bool, span) -> None:
+    """ValueError for dry friction where no method here knows when it changes its sign."""
+    if pendulum.dry is None:
+        return
+    if not plain:
+        raise ValueError(
+            "Argument `pendulum` must be without dry friction for diffrax's solvers and options: "
+            "their steps would go over the turning points."
+        )
+    if callable(pendulum.tau) and not isinstance(pendulum.tau, SampledTorque):
+        raise ValueError(
+            "Argument `pendulum` must have, with dry friction, a torque that is a number or a "
+            "`SampledTorque`, but got another function of time: SampledTorque(ts, tau(ts))."
+        )
+    if span is not None and np.any(span < 0):
+        raise ValueError(
+            "Argument `ts` must be `t0` or later with dry friction: what has come to rest does not "
+            "know its past."
+        )
 
 
 def _hidden(*terms) -> bool:
@@ -163,7 +193,7 @@ def _span(ts, t0):
 def _barely_damped(pendulum: Pendulum, span, dtype) -> bool:
     """Whether all lanes are, and a step at a time would take long."""
     epsilon, beta = pendulum.epsilon, pendulum.beta
-    if pendulum.tau is not None or beta is None or dtype != jnp.float64 or _hidden(epsilon, beta):
+    if pendulum.tau is not None or pendulum.dry is not None or beta is None or dtype != jnp.float64 or _hidden(epsilon, beta):
         return False
     root, beta = _together(np.sqrt(np.asarray(epsilon)), beta)
     weak = np.all((beta > 0) & (beta <= 3e-4 * root) | np.isnan(beta))
@@ -175,7 +205,8 @@ def _overdamped(pendulum: Pendulum) -> bool | None:
     if pendulum.beta is None:
         return False
     tau = 0.0 if pendulum.tau is None or callable(pendulum.tau) else pendulum.tau
-    terms = pendulum.epsilon, pendulum.beta, tau
+    dry = 0.0 if pendulum.dry is None else pendulum.dry
+    terms = pendulum.epsilon, pendulum.beta, tau, dry
     if _hidden(*terms):
         return None
     with np.errstate(over="ignore"):

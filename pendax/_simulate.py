@@ -166,9 +166,9 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     if ts.ndim > 1:
         raise ValueError(f"Argument `ts` must have one axis at most, but got shape {ts.shape}.")
     numbers = {"v0": v0, "theta0": theta0, "t0": t0, "epsilon": pendulum.epsilon}
-    for name in ("beta", "tau"):
+    for name in ("beta", "tau", "dry"):
         leaf = getattr(pendulum, name)
-        if leaf is not None and not (name == "tau" and callable(leaf)):
+        if leaf is not None and not callable(leaf):
             numbers[name] = leaf
     lanes = dict(zip(numbers, common(**numbers), strict=True))
     dtype = jnp.result_type(ts, lanes["v0"])
@@ -190,8 +190,9 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     # A lane without an answer must not keep the others waiting.
     bad = ~jnp.all(jnp.stack([jnp.isfinite(x) for x in lanes.values()]), 0)
     bad = bad | ~jnp.all(jnp.isfinite(ts)) | (lanes["epsilon"] <= 0)
-    if "beta" in lanes:
-        bad = bad | (lanes["beta"] < 0)
+    for name in ("beta", "dry"):
+        if name in lanes:
+            bad = bad | (lanes[name] < 0)
     # At rest, without forces: a single step.
     rest = dict.fromkeys(lanes, 0.0) | {"epsilon": 1e-30}
     # Their derivatives, 0 · NaN in every argument and every mode.
@@ -228,7 +229,7 @@ def _solved(pendulum, times, lanes, method):
     """Compiled once for all calls alike."""
 
     def one(lane):
-        terms = {name: lane[name] for name in ("epsilon", "beta", "tau") if name in lane}
+        terms = {name: lane[name] for name in ("epsilon", "beta", "tau", "dry") if name in lane}
         scene = eqx.tree_at(
             lambda p: [getattr(p, name) for name in terms], pendulum, list(terms.values())
         )

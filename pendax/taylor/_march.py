@@ -9,9 +9,12 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
+from .._torque import SampledTorque
+from . import _switched as switched
 from ._columns import by_columns
 from ._overdamped import is_overdamped, overdamped
-from ._series import STABLE, Method, Scene, State, for_tangents, order_for, taylor
+from ._series import STABLE, Method, Scene, State, for_tangents, largest, order_for, taylor
+from ._switched import Stretch, is_switched, momentary
 
 Scalar = Float[Array, ""]
 
@@ -31,23 +34,26 @@ def marched(
     ts: Float[Array, " times"],
     max_steps: Int[Array, ""],
     *,
+    t0: Scalar | None = None,
     rtol: float,
     atol: float,
     stiff: bool,
     moving_times: bool,
-) -> tuple[State, March]:
+) -> tuple[State, March | Stretch]:
     """[`march`][] with derivatives of every mode and order; NaN where it did not arrive.
 
-    `moving_times`: whether `ts`, too, may be differentiated.
+    `moving_times`: whether `ts`, too, may be differentiated.  `t0`: when `start` holds, for a
+    scene that has a clock.
     """
+    t0 = jnp.zeros_like(ts[0]) if t0 is None else t0
 
-    def solve(tangents, scene, start, ts, most):
-        most, options = most.astype(jnp.int32), {"stiff": stiff, "tangents": tangents}
-        return march(scene, start, ts, most, rtol=rtol, atol=atol, **options)
+    def solve(tangents, scene, start, ts, extra):
+        most, options = extra[0].astype(jnp.int32), {"stiff": stiff, "tangents": tangents}
+        return march(scene, start, ts, most, extra[1], rtol=rtol, atol=atol, **options)
 
     # With the parameters, as all that is traced must be, and so a floating number.
-    most = max_steps.astype(ts.dtype)
-    states, (reached, end) = with_derivatives(solve, scene, start, ts, most, moving_times)
+    extra = max_steps.astype(ts.dtype), t0
+    states, (reached, end) = with_derivatives(solve, scene, start, ts, extra, moving_times)
     return State(*(jnp.where(reached, x, jnp.nan) for x in states)), end
 
 
@@ -65,9 +71,17 @@ def with_derivatives(
     )
     states, said = by_columns(value, leaves, careful)
     if moving_times:
-        late = ts - lax.stop_gradient(ts)
-        states = jax.vmap(partial(_later, scene))(states, late)
+        states = jax.vmap(partial(_moved, scene))(states, ts)
     return states, said
+
+
+def _moved(scene: Scene, state: State, t: Scalar) -> State:
+    """The state at t, with its derivatives in t."""
+    late = t - lax.stop_gradient(t)
+    if is_switched(scene):
+        scene, moving = momentary(scene, t, state)
+        late = moving * late
+    return _later(scene, state, late)
 
 
 @jax.custom_jvp
@@ -90,44 +104,55 @@ def march(
     start: State,
     ts: Float[Array, " times"],
     max_steps: Int[Array, ""],
+    t0: Scalar,
     *,
     rtol: float,
     atol: float,
     stiff: bool,
     tangents: bool = False,
-) -> tuple[State, tuple[Bool[Array, " times"], March]]:
-    """The states at `ts`, monotone away from 0, which of them were reached, and the end.
+) -> tuple[State, tuple[Bool[Array, " times"], March | Stretch]]:
+    """The states at `ts`, monotone away from `t0`, which of them were reached, and the end.
 
-    `start` holds at 0.  Steps end on saved times.  `stiff`: whether the program has the
+    `start` holds at `t0`.  Steps end on saved times.  `stiff`: whether the program has the
     overdamped motion in it; a lane takes it where its own β is large enough, once what
     relaxes like e^(−βt) is below a rounding.  `tangents`: whether steps are to be as short as
     those of perturbations, the motion's own being at rest perhaps.
     """
+    order, longest, on, begin = order_for(rtol, atol), STABLE, until, _begun
+    if is_switched(scene):
+        # A step has room for one turning point, and lines are mostly short.
+        longest, on, begin = 1.0, switched.until, switched.begun
+        order = 10 if isinstance(scene.tau, SampledTorque) else order
     full, slow = (
-        kind(order, rtol, atol, for_tangents(order, rtol, atol) if tangents else STABLE)
-        for kind, order in ((taylor, order_for(rtol, atol)), (overdamped, 8))
+        kind(n, rtol, atol, min(longest, for_tangents(n, rtol, atol)) if tangents else longest)
+        for kind, n in ((taylor, order), (overdamped, 8))
     )
 
-    def to_next(at: March, t):
+    def to_next(at, t):
         if not stiff:
-            at = until(full, scene, at, t, max_steps)
+            at = on(full, scene, at, t, max_steps)
         else:
-            relaxed = _relaxed(scene)
-            target = jnp.where(t > 0, jnp.maximum(at.t, jnp.minimum(t, relaxed)), t)
-            at = until(full, scene, at, target, max_steps)
-            at = until(slow, scene, at, t, max_steps)
+            relaxed = t0 + _relaxed(scene)
+            target = jnp.where(t > t0, jnp.maximum(at.t, jnp.minimum(t, relaxed)), t)
+            at = on(full, scene, at, target, max_steps)
+            at = on(slow, scene, at, t, max_steps)
         return at, (at.state, at.going & (at.t == t))
 
-    zero = jnp.zeros_like(ts[0])
-    end, (states, reached) = lax.scan(
-        to_next, March(zero, start, jnp.zeros((), jnp.int32), jnp.ones((), bool)), ts
-    )
+    end, (states, reached) = lax.scan(to_next, begin(scene, start, t0), ts)
     return states, (reached, end)
 
 
+def _begun(scene: Scene, start: State, t0: Scalar) -> March:
+    return March(t0, start, jnp.zeros((), jnp.int32), jnp.ones((), bool))
+
+
 def _relaxed(scene: Scene):
-    """When v has become a function of θ, 2e-28 of the rest being left; never, if damped less."""
-    return lax.stop_gradient(jnp.where(is_overdamped(scene), 64 / scene.beta, jnp.inf))
+    """When v has become a function of θ, 2e-28 of the rest being left; never, if damped less.
+
+    Where it turns on its way, it begins once more.
+    """
+    long = 64 if scene.dry is None else 128
+    return lax.stop_gradient(jnp.where(is_overdamped(scene), long / scene.beta, jnp.inf))
 
 
 def until(
@@ -159,9 +184,13 @@ def budget(scene: Scene, start: State, ts) -> Int[Array, "*lanes"]:
     span = jnp.max(jnp.abs(ts))
     fastest = jnp.abs(start.v) + 2 * jnp.sqrt(scene.epsilon)
     beta = 0.0 if scene.beta is None else scene.beta
+    most = 1000 + 4 * ts.size
     if scene.tau is not None:
         # τ accelerates until the damping, or the end, stops it.
-        fastest = fastest + jnp.abs(scene.tau) * jnp.minimum(span, 1 / jnp.maximum(beta, 1 / span))
+        longest = jnp.minimum(span, 1 / jnp.maximum(beta, 1 / span))
+        fastest = fastest + largest(scene.tau) * longest
+    if isinstance(scene.tau, SampledTorque):
+        most = most + 2 * scene.tau.ts.size
     rate = jnp.sqrt(scene.epsilon) + fastest + beta
-    most = 1000 + 4 * ts.size + 20 * span * rate
+    most = most + 20 * span * rate
     return jnp.minimum(most, _COUNTABLE).astype(jnp.int32)

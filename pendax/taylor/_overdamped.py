@@ -43,7 +43,10 @@ def overdamped(
     def quickest(scene):
         return strength(scene) / scene.beta
 
-    return method(partial(_series, order, sweeps), order, rtol, atol, quickest, longest, plain)
+    def series(order, scene, state):
+        return _series(order, sweeps, scene, state)
+
+    return method(series, order, rtol, atol, quickest, longest, plain)
 
 
 def is_overdamped(scene: Scene):
@@ -53,9 +56,9 @@ def is_overdamped(scene: Scene):
 
 def strength(scene: Scene):
     """What the slow motion's rate is, times β."""
-    if scene.tau is None:
-        return scene.epsilon
-    most = scene.epsilon + largest(scene.tau)
+    most = scene.epsilon
+    for force in (None if scene.tau is None else largest(scene.tau), scene.dry):
+        most = most if force is None else most + force
     if isinstance(scene.tau, Sine):
         # A fast clock makes w as steep as a strong force.
         return jnp.maximum(most, scene.tau.frequency * scene.beta)

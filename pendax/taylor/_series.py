@@ -26,6 +26,8 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..special._cpu import stage
+from .._torque import SampledTorque
+from ._first_zero import first_zero
 
 Scalar = Float[Array, ""]
 
@@ -35,11 +37,15 @@ STABLE = 2.0
 
 
 class Scene(NamedTuple):
-    """The parameters, a term that is `None` being absent; τ a number or a [`Sine`][]."""
+    """The parameters, a term that is `None` being absent; τ a number or one of the next two.
+
+    Series know nothing of `dry`: see `_switched`, which makes it a part of τ.
+    """
 
     epsilon: Any
     beta: Any
     tau: Any
+    dry: Any = None
 
 
 class Sine(NamedTuple):
@@ -51,8 +57,19 @@ class Sine(NamedTuple):
     clock: Any
 
 
+class Ramp(NamedTuple):
+    """The torque value + slope t."""
+
+    value: Any
+    slope: Any
+
+
 def largest(tau: Any) -> Any:
-    """The most that |τ| can be; of numbers a number, that a method be chosen by it."""
+    """The most that |τ| can be, of a ramp now; of numbers a number, to choose a method by."""
+    if isinstance(tau, Ramp):
+        return abs(tau.value)
+    if isinstance(tau, SampledTorque):
+        return tau.largest()
     return abs(tau.mean) + abs(tau.amplitude) if isinstance(tau, Sine) else abs(tau)
 
 
@@ -60,6 +77,8 @@ def torque_series(tau: Any, unit: Any, order: int) -> list[Any]:
     """τ_0, τ_1, … of time counted in `unit`, as far as they are not 0."""
     if tau is None:
         return []
+    if isinstance(tau, Ramp):
+        return [tau.value, tau.slope * unit]
     if not isinstance(tau, Sine):
         return [tau]
     wave = [jnp.sin(tau.clock), jnp.cos(tau.clock)]
@@ -78,10 +97,17 @@ class State(NamedTuple):
 
 
 class Method(NamedTuple):
-    """A step of size h and, from (θ, v), the size that keeps it within the tolerances."""
+    """A step of size h and, from (θ, v), the size that keeps it within the tolerances.
+
+    `turn(scene, state, way, most)`: the size of one on which v keeps the sign `way`, `most` at
+    most, and negative where v comes to nothing at its end; `landed(scene, state)`: from a state
+    where v is nothing but for rounding and derivatives, to where it is nothing, and the time.
+    """
 
     step: Callable[[Scene, State, Scalar], State]
     size: Callable[[Scene, State], Scalar]
+    turn: Callable[[Scene, State, Scalar, Scalar], Scalar]
+    landed: Callable[[Scene, State], tuple[State, Scalar]]
 
 
 def order_for(rtol: float, atol: float) -> int:
@@ -100,7 +126,7 @@ def taylor(order: int, rtol: float, atol: float, longest: float = STABLE) -> Met
         rate = jnp.sqrt(scene.epsilon)
         return rate if scene.beta is None else jnp.maximum(rate, scene.beta)
 
-    return method(partial(scaled_series, order), order, rtol, atol, quickest, longest)
+    return method(scaled_series, order, rtol, atol, quickest, longest)
 
 
 def for_tangents(order: int, rtol: float, atol: float) -> float:
@@ -108,8 +134,11 @@ def for_tangents(order: int, rtol: float, atol: float) -> float:
     return min(STABLE, (math.factorial(order) * min(rtol, atol)) ** (1 / order))
 
 
+_BRIEF = 4  # terms of θ around a turning point: derivatives are right up to the third
+
+
 def method(
-    series: Callable,
+    series_of: Callable,
     order: int,
     rtol: float,
     atol: float,
@@ -117,7 +146,8 @@ def method(
     longest: float,
     cut: Callable = stage,
 ) -> Method:
-    """Of `series(scene, state)`: a rate, and the coefficients of v / rate in rate · t."""
+    """Of `series_of(order, scene, state)`: a rate, the coefficients of v / rate in rate · t."""
+    series = partial(series_of, order)
 
     def theta_after(scene, state, h):
         rate, v = series(scene, state)
@@ -149,7 +179,29 @@ def method(
     def size(scene, state):
         return cut(size_of, *lax.stop_gradient((scene, state)))
 
-    return Method(step, size)
+    def turn_of(scene, state, way, most):
+        h = jnp.minimum(size_of(scene, state), most)
+        rate, v = series(scene, state)
+        v = [way * x for x in v]
+        # From rest v is t times what has no zero at the start; there it can't go the other way.
+        rest = v[0] == 0
+        started = [jnp.maximum(v[1], 0), *v[2:], jnp.zeros_like(h)]
+        v = [jnp.where(rest, x, y) for x, y in zip(started, v, strict=True)]
+        x, found = first_zero(v, h * rate)
+        h = jnp.minimum(x / rate, h)
+        return jnp.where(found, -h, h)
+
+    def turn(scene, state, way, most):
+        return cut(turn_of, *lax.stop_gradient((scene, state, way, most)))
+
+    def landed(scene, state):
+        rate, v = series_of(_BRIEF, scene, state)
+        slopes = [n * x for n, x in enumerate(v)][1:]
+        x = -v[0] / v[1]
+        x = x - polynomial(v, x) / polynomial(slopes, x)
+        return State(state.theta + x * polynomial(integrated(v[:-1]), x), jnp.zeros_like(x)), x / rate
+
+    return Method(step, size, turn, landed)
 
 
 def plain(function: Callable, *arguments):
