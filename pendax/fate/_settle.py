@@ -13,9 +13,10 @@ from .._pendulum import Pendulum
 from .._results import Result
 from ..taylor import Scene, State
 from ._follow import CAPTURED, GOING, RUNNING, follow, is_captured
+from ._rest import rest as at_rest
 from ._retrapping import retrapping
 from ._saddle import saddle, well_of
-from ._scene import require_damped
+from ._scene import require_constant, require_damped
 
 Scalar = Float[Array, ""]
 
@@ -26,14 +27,17 @@ _BLOCK = 2048
 class Settled(eqx.Module):
     """The end of a motion, lane by lane.
 
-    `running`: 0 for captured, +1 or −1 for running that way for ever; `well`: n, where θ goes to
-    2πn + arcsin(τ/ε), and 0 without a meaning where it runs; `time`, s: when that was certain,
-    without derivatives.  Only where `result` is `Result.successful` do they say anything: else
-    both numbers are 0.
+    `running`: 0 for captured, +1 or −1 for running that way for ever; `well`: n, the number of
+    turns of the bottom, 2πn + arcsin(τ/ε), whose well it is in, and 0 without a meaning where it
+    runs; `theta`, rad: where it comes to rest, that bottom, or where dry friction holds it, NaN
+    where it runs; `time`, s: when all that was certain, without derivatives: with dry friction
+    when it has come to rest.  Only where `result` is `Result.successful` do they say anything:
+    else both integers are 0 and `theta` is NaN.
     """
 
     running: Int[Array, "*lanes"]
     well: Int[Array, "*lanes"]
+    theta: Float[Array, "*lanes"]
     time: Float[Array, "*lanes"]
     result: Result
 
@@ -55,9 +59,15 @@ def settle(
     saddle, or it has passed a saddle downhill under a torque above τ_r
     ([`retrapping_torque`][]), from where all that passes runs for ever.
 
+    With dry friction it is followed until it is at rest, anywhere in the band
+    |ε sin θ − τ| ≤ c, around the top as well; or until it creeps, so damped that it never turns
+    again, towards the edge of that band.  The angle has derivatives of every mode and order in
+    all parameters, but where the number of swings changes, or whether they are enough for one
+    more turn: there it jumps.  Well numbers are then those of the angle at rest.
+
     **Arguments:**
 
-    - `pendulum`: with damping and a constant torque (or none).
+    - `pendulum`: with damping, dry friction or both, and a constant torque (or none).
     - `v0`, `theta0`: angular velocity, rad/s, and angle, rad.  Shapes broadcast, with the
       leaves of the pendulum.
     - `rtol`, `atol`: tolerances of a step, of which the smaller counts; by default 1e-12, in
@@ -68,20 +78,26 @@ def settle(
     **Returns:** a [`Settled`][].  At |τ| > ε nothing is captured, whatever the start.  Wells
     are numbered as angles are: a motion towards negative angles ends in negative wells.
 
-    **Raises:** `ValueError` for β = `None` and for a τ that is a function of time;
-    `RuntimeError` for lanes without an end: β = 0, a start that is exactly on a saddle, which
+    **Raises:** `ValueError` for β and c `None` and for a τ that is a function of time;
+    `RuntimeError` for lanes without an end: no friction, a start that is exactly on a saddle, which
     float(π) is not, `max_steps` reached.  NaN, parameters outside their domain and |θ0| above
     0.1/eps, which has no digits of a turn left, say so in their `result`.
 
     A start is right whose boundary is farther away than the error of the steps, 1e-10 or so;
     the boundaries themselves are [`critical_torque`][] and [`well_boundaries`][].
+    The angle of dry friction is within 1e3 tolerances times κ ([`condition`][]).
     Suzuki & Suzuki §7.2, §8.2.
     """
-    require_damped(pendulum, "its end")
+    if isinstance(pendulum, Pendulum) and pendulum.dry is not None:
+        require_constant(pendulum, "its end")
+    else:
+        require_damped(pendulum, "its end")
     rtol, atol = tolerance("rtol", rtol), tolerance("atol", atol)
     most = None if max_steps is None else whole("max_steps", max_steps, 1)
     tau = 0.0 if pendulum.tau is None else pendulum.tau
-    lanes = common(epsilon=pendulum.epsilon, beta=pendulum.beta, tau=tau, v0=v0, theta0=theta0)
+    beta = 0.0 if pendulum.beta is None else pendulum.beta
+    given = {"epsilon": pendulum.epsilon, "beta": beta, "tau": tau, "v0": v0, "theta0": theta0}
+    lanes = common(**given, **({} if pendulum.dry is None else {"dry": pendulum.dry}))
     dtype = lanes[0].dtype
     if dtype in (jnp.float16, jnp.bfloat16):
         raise ValueError(f"Arguments must be float32 or float64 to be followed, but got {dtype}.")
@@ -105,9 +121,11 @@ def _settle(rtol: float, most: int | None, *lanes: Float[Array, "..."]) -> Settl
     return jax.tree.map(lambda x: x.reshape(lanes[0].shape), found)
 
 
-def _one(rtol: float, most: int | None, epsilon, beta, tau, v0, theta0) -> Settled:
+def _one(rtol: float, most: int | None, epsilon, beta, tau, v0, theta0, dry=None) -> Settled:
     good = (epsilon > 0) & (epsilon < jnp.inf) & (beta >= 0) & (beta < jnp.inf)
     good = good & jnp.isfinite(tau) & jnp.isfinite(v0)
+    if dry is not None:
+        good = good & (dry >= 0) & (dry < jnp.inf)
     # An angle that has lost its turn has no well.
     good = good & (jnp.abs(theta0) < 0.1 / jnp.finfo(theta0.dtype).eps)
     root = jnp.sqrt(jnp.where(good, epsilon, 1))
@@ -115,16 +133,28 @@ def _one(rtol: float, most: int | None, epsilon, beta, tau, v0, theta0) -> Settl
     # A lane without an answer hangs at rest.
     rest = jnp.array([1, 0, 0, 0], root.dtype)
     given = [beta / root, mirror * tau / (root * root), mirror * v0 / root, mirror * theta0]
-    beta, tau, v0, theta0 = lax.stop_gradient(jnp.where(good, jnp.stack(given), rest))
-    enough = 2000 + 20 * (jnp.abs(v0) + 4) / jnp.maximum(beta, 1e-12)
+    beta, tau, v0, theta0 = jnp.where(good, jnp.stack(given), rest)
+    start, speed = State(theta0, v0), lax.stop_gradient(jnp.abs(v0))
+    if dry is None:
+        enough = 2000 + 20 * (speed + 4) / jnp.maximum(beta, 1e-12)
+    else:
+        dry = jnp.where(good, dry / (root * root), 1)
+        enough = 2000 + 50 * (speed * speed + 4) / jnp.maximum(jnp.maximum(beta, dry), 1e-12)
     limit = jnp.minimum(enough, _MOST).astype(jnp.int32) if most is None else most
-    end, state, t = fate(beta, tau, State(theta0, v0), limit, rtol)
-    well = jnp.where(end == CAPTURED, mirror * well_of(saddle(tau), state.theta), 0)
+    if dry is None:
+        still = lax.stop_gradient((beta, tau, start))
+        end, state, t = fate(*still, limit, rtol)
+        well = well_of(saddle(still[1]), state.theta)
+        theta = 2 * jnp.pi * well + jnp.arcsin(jnp.where(end == CAPTURED, tau, 0))
+    else:
+        theta, (end, well, t) = at_rest(beta, tau, dry, start, lax.stop_gradient(limit), rtol)
+    captured = end == CAPTURED
     result = Result.where(end == GOING, Result.unsettled, Result.successful)
     return Settled(
         jnp.where(end == RUNNING, mirror, 0).astype(int),
-        well.astype(int),
-        jnp.where(good, t / root, jnp.nan),
+        jnp.where(captured, mirror * well, 0).astype(int),
+        jnp.where(captured & good, mirror, jnp.nan) * theta,
+        jnp.where(good, lax.stop_gradient(t / root), jnp.nan),
         Result.where(good, result, Result.not_a_number),
     )
 

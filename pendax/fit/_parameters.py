@@ -12,13 +12,15 @@ Vector = Float[Array, " parameters"]
 class Parameters(eqx.Module):
     """Fitted arrays by name, each searched as x, 0 at its start.
 
-    One that has to be positive is start · eˣ, any other start + scale · x: never out of range,
-    and steps in x of the order of one.
+    One that has to be `positive` is start · eˣ, or start · (1 + x)² if it `may_vanish`: eˣ would
+    keep for ever what a short stretch has taken for nothing.  Any other is start + scale · x.
+    Never out of range, and steps in x of the order of one.
     """
 
     start: dict[str, Float[Array, "..."]]
     scale: dict[str, Float[Array, ""]]
     positive: frozenset[str] = eqx.field(static=True)
+    may_vanish: frozenset[str] = eqx.field(static=True)
     names: tuple[str, ...] = eqx.field(static=True)  # in order: a pytree's are sorted
 
     @property
@@ -28,8 +30,9 @@ class Parameters(eqx.Module):
     @property
     def has_sign(self) -> Bool[Array, " parameters"]:
         """Of each element, whether it has to be positive."""
+        signed = self.positive | self.may_vanish
         return self.joined(
-            {name: jnp.full(x.shape, name in self.positive) for name, x in self.start.items()}
+            {name: jnp.full(x.shape, name in signed) for name, x in self.start.items()}
         )
 
     def split(self, vector: Vector) -> dict[str, Float[Array, "..."]]:
@@ -51,6 +54,8 @@ class Parameters(eqx.Module):
             start = self.start[name]
             if name in self.positive:
                 values[name] = start * jnp.exp(step)
+            elif name in self.may_vanish:
+                values[name] = start * (1 + step) ** 2
             else:
                 values[name] = start + self.scale[name] * step
         return self.joined(values)

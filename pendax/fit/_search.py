@@ -16,6 +16,7 @@ from ._judgement import Goodness, Judgement, goodness, judged
 from ._minimise import by_optimiser, least_squares
 from ._parameters import Parameters
 from ._recording import Recording
+from ._terms import with_numbers
 
 Vector = Float[Array, " parameters"]
 SPREAD = 0.3  # of further starts
@@ -121,10 +122,7 @@ class Search(eqx.Module):
     def _model(self, values: Vector, end: Float[Array, ""]):
         """θ, with the offset, and v at the times up to `end`, and there at all later ones."""
         at = self.held | self.parameters.split(values)
-        names = [name for name in ("epsilon", "beta", "tau") if name in at]
-        scene = eqx.tree_at(
-            lambda p: [getattr(p, name) for name in names], self.scene, [at[name] for name in names]
-        )
+        scene = with_numbers(self.scene, at)
         ts = self.recording.ts
 
         def one(ts, v0, theta0):

@@ -10,16 +10,16 @@ from jaxtyping import Array, ArrayLike, Float
 from .._arrays import common, concrete, floating, whole
 from .._method import Method, TaylorSeries, choose
 from .._pendulum import Pendulum
+from .._torque import SampledTorque
 from ..taylor import Scene, State, budget, is_overdamped
 from ._fit import Fit
 from ._judgement import ended
 from ._parameters import Parameters
 from ._recording import Recording, recording_of, start_of
 from ._search import Search
+from ._terms import MAY_VANISH, OF_SCENE, POSITIVE, begun, numbers_of, scales, widened, with_numbers
 
-TERMS = ("epsilon", "beta", "tau")
 FIRST = 2.0  # radians of √ε t that the first stretch has
-LEAST = 1e-3  # of √ε: a damping to begin with, where the guess is 0
 
 
 def fit_trajectory(
@@ -46,8 +46,8 @@ def fit_trajectory(
     Weighted least squares by Levenberg–Marquardt, on a stretch of two radians of √ε t first, then
     on stretches that double up to all of the recording: over many turns a phase has a minimum at
     every one of them, and what is known from one stretch tells the right one of the next.  The
-    motion is that of [`simulate`][]: the closed form without damping and torque, Taylor's method
-    for constant ones, diffrax for a torque that is a function of time.
+    motion is that of [`simulate`][]: the closed form without friction and torque, Taylor's method
+    for constant ones and recorded torques, diffrax for a torque that is another function of time.
 
     **Arguments:**
 
@@ -55,11 +55,13 @@ def fit_trajectory(
       initial state holds at the first time.  Several runs of one pendulum are a leading axis of
       `theta` (and of `ts`, unless they share it): v0, θ0 and offset are then each run's own.
     - `guess`: the scene to start from.  Terms that it has are fitted, those that are `None` stay
-      out, and a τ that is a function of time is held.  ε, and β, may be some tens of percent off;
-      a β of 0 starts from 1e-3 √ε.
+      out, and a τ that is a function of time is held; of a [`SampledTorque`][] its inertia and
+      bias are terms.  ε, and friction, may be some tens of percent off; a β of 0 starts from
+      1e-3 √ε, a dry friction of 0 from 1e-3 ε.
     - `v0`, `theta0`: where the initial state starts from, rad/s and rad, one number or one a run.
       `None`: a parabola through the first samples.
-    - `fixed`: names among epsilon, beta, tau, v0, theta0, offset that are held where they start.
+    - `fixed`: names among epsilon, beta, tau, dry, inertia, bias, v0, theta0, offset that are held
+      where they start.
     - `velocity`: measured θ̇, rad/s, fitted together with `theta`.
     - `sigma`: standard errors of the angles, rad, a number or one a sample; with `velocity` a pair,
       that of angles and that of velocities.  Their ratios are the weights, and `reduced_chi2` is
@@ -89,12 +91,14 @@ def fit_trajectory(
     **Accuracy:** the minimum to 1e-4 of the standard errors, or to rounding where there is no
     noise; `result` is *not converged* where it may be 1e-3 of them off.
     """
-    terms = _terms(guess)
+    given = numbers_of(guess)
+    terms = {name: jnp.asarray(x, floating(1.0)) for name, x in given.items()}
+    guess = widened(guess)
     fixed = (fixed,) if isinstance(fixed, str) else tuple(fixed)
     starts = whole("starts", starts, 1)
     steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
     recording = recording_of(ts, theta, velocity, sigma, mask, guess, unwrap)
-    dtype, shape = floating(ts, theta, *(getattr(guess, name) for name in terms)), jnp.shape(theta)
+    dtype, shape = floating(ts, theta, *given.values()), jnp.shape(theta)
     held, parameters = _parameters(
         terms, recording, {"v0": v0, "theta0": theta0, "offset": offset}, fixed
     )
@@ -122,7 +126,7 @@ def fit_trajectory(
     values = held | parameters.split(found.values)
     values = {name: shaped(name, x) for name, x in values.items()}
     errors = parameters.split(found.judgement.errors)
-    model = Pendulum(values["epsilon"], values.get("beta"), values.get("tau", guess.tau))
+    model = with_numbers(guess, {name: values[name] for name in terms})
     residuals = recording.theta - found.theta
     speed = None if recording.velocity is None else recording.velocity - found.velocity
     return Fit(
@@ -141,25 +145,9 @@ def fit_trajectory(
     )
 
 
-def _terms(guess: Pendulum) -> dict[str, Float[Array, ""]]:
-    """The terms that are numbers, of the default precision."""
-    if not isinstance(guess, Pendulum):
-        raise ValueError(f"Argument `guess` must be a Pendulum, but got {type(guess).__name__}.")
-    terms = {name: getattr(guess, name) for name in TERMS}
-    terms = {name: x for name, x in terms.items() if x is not None and not callable(x)}
-    for name, x in terms.items():
-        if jnp.ndim(x):
-            raise ValueError(
-                f"Argument `guess` must have numbers, but its {name} has shape {jnp.shape(x)}: "
-                "jax.vmap fits many."
-            )
-    return {name: jnp.asarray(x, floating(1.0)) for name, x in terms.items()}
-
-
 def _parameters(terms, recording: Recording, states, fixed) -> tuple[dict, Parameters]:
     """What is held, and what is fitted, with the numbers it starts from."""
     runs, dtype = recording.theta.shape[0], recording.theta.dtype
-    unit = jnp.sqrt(terms["epsilon"])
     theta0, v0 = start_of(recording, terms["epsilon"])
     guessed = {"v0": v0, "theta0": theta0}
     if states["offset"] is not None and states["theta0"] is None:
@@ -182,12 +170,11 @@ def _parameters(terms, recording: Recording, states, fixed) -> tuple[dict, Param
     held = {name: start.pop(name) for name in tuple(start) if name in fixed}
     if not start:
         raise ValueError("Argument `fixed` must leave something to fit.")
-    if "beta" in start:
-        start["beta"] = jnp.where(start["beta"] == 0, LEAST * unit, start["beta"])
-    one = jnp.ones((), dtype)
-    scales = {"tau": unit * unit, "v0": unit}
-    scale = {name: scales.get(name, one) for name in start}
-    return held, Parameters(start, scale, frozenset({"epsilon", "beta"} & set(start)), tuple(start))
+    one, units = jnp.ones((), dtype), scales(terms, terms["epsilon"])
+    start = begun(start, terms["epsilon"])
+    scale = {name: units.get(name, one) for name in start}
+    names = frozenset(start)
+    return held, Parameters(start, scale, POSITIVE & names, MAY_VANISH & names, tuple(start))
 
 
 def _require_enough(mask, recording: Recording, parameters: Parameters) -> None:
@@ -227,17 +214,19 @@ def _method(guess: Pendulum, recording: Recording, start: dict[str, Array]) -> M
     if guess.is_free:
         return None
     dtype, ts = recording.ts.dtype, recording.ts[0]
-    terms = Scene(*(start.get(name) for name in TERMS))
+    numbers = {name: start.get(name) for name in OF_SCENE}
+    torque = guess.tau if isinstance(guess.tau, SampledTorque) else None
+    terms = Scene(**numbers if torque is None else numbers | {"tau": torque})
     fastest = State(jnp.max(jnp.abs(start["theta0"])), jnp.max(jnp.abs(start["v0"])))
     most = ts.size + budget(terms, fastest, ts - ts[0]) // 8
-    if callable(guess.tau):
+    if callable(guess.tau) and torque is None:
         names = ("stepsize_controller", "dt0", "adjoint", "rtol", "atol", "max_steps")
         seen = concrete(most)
         options = dict.fromkeys(names) | {"max_steps": 2**17 if seen is None else int(seen)}
         return choose(guess, ts, ts[0], 0.0, dtype, None, options)
     rtol = float(jnp.finfo(dtype).eps) ** 0.85
     # Hidden from sight it is not: of such a scene only the ratios of ε, β and τ can be found.
-    seen = [0.0 if x is None else concrete(x) for x in terms]
+    seen = [0.0 if x is None else concrete(x) for x in numbers.values()]
     shown = guess.beta is not None and all(x is not None for x in seen)
-    stiff = shown and bool(is_overdamped(Scene(*seen)))
+    stiff = torque is None and shown and bool(is_overdamped(Scene(*seen)))
     return TaylorSeries(rtol=rtol, atol=rtol, max_steps=most, stiff=stiff, moving_times=False)

@@ -1,5 +1,9 @@
-"""Scenes without a clock, τ constant or absent, by Taylor series of the motion itself."""
+"""Taylor series of the motion itself, for terms that don't depend on time, or simply.
 
+τ may be a sine or samples that straight lines join; dry friction is a torque that is switched.
+"""
+
+from . import _switched as switched
 from ._averaged import averaged as averaged
 from ._columns import by_columns as by_columns
 from ._columns import no_tangent as no_tangent
