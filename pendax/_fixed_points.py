@@ -43,11 +43,16 @@ def fixed_points(pendulum: Pendulum) -> FixedPoints:
     λ² + βλ ± κ = 0, κ = √(ε² − τ²) = ε cos θ.  NaN and kind *none* for |τ| > ε; at |τ| = ε
     the two are one, and derivatives are infinite.
 
-    **Raises:** `ValueError` for a torque that is a function of time.
+    **Raises:** `ValueError` for a torque that is a function of time, and for dry friction.
 
     The small root is κ over the large one: −β/2 + √(β²/4 − κ) has no digits in strong
     damping.  Suzuki & Suzuki §7.1.
     """
+    if pendulum.dry is not None:
+        raise ValueError(
+            "Argument `pendulum` must be without dry friction, which lets it rest anywhere with "
+            "|ε sin θ − τ| ≤ c; where a motion comes to rest is `settle`."
+        )
     if callable(pendulum.tau):
         raise ValueError("Argument `pendulum` must have a constant torque, but got a function.")
     beta = 0.0 if pendulum.beta is None else pendulum.beta

@@ -193,7 +193,13 @@ def _span(ts, t0):
 def _barely_damped(pendulum: Pendulum, span, dtype) -> bool:
     """Whether all lanes are, and a step at a time would take long."""
     epsilon, beta = pendulum.epsilon, pendulum.beta
-    if pendulum.tau is not None or pendulum.dry is not None or beta is None or dtype != jnp.float64 or _hidden(epsilon, beta):
+    if (
+        pendulum.tau is not None
+        or pendulum.dry is not None
+        or beta is None
+        or dtype != jnp.float64
+        or _hidden(epsilon, beta)
+    ):
         return False
     root, beta = _together(np.sqrt(np.asarray(epsilon)), beta)
     weak = np.all((beta > 0) & (beta <= 3e-4 * root) | np.isnan(beta))

@@ -14,6 +14,7 @@ from ._method import choose
 from ._motion import motion
 from ._pendulum import Pendulum, require_free
 from ._results import Result, where
+from ._torque import SampledTorque
 
 
 class Trajectory(eqx.Module):
@@ -53,11 +54,15 @@ def simulate(
     """The motion through (θ0, v0) at time `t0`, by the method that its scene asks for.
 
     - Neither damping nor torque: the closed form.
-    - τ constant: Taylor's method for this equation; where β² > 4000 (ε + |τ|), on the slow curve
-      v(θ) once v has relaxed to it, so that the steps don't grow with β.
-    - No torque, 0 < β ≤ 3e-4 √ε in all lanes and more than 10⁴/√ε to follow, in float64 and with
-      neither `rtol`, `atol` nor `max_steps`: averaging over turns, some 0.2 s however long.
-    - τ a function of t: diffrax's `Dopri8`, or its `Kvaerno5` where β is as large as above.
+    - τ constant or a [`SampledTorque`][]: Taylor's method for this equation; where τ is constant
+      and β² > 4000 (ε + |τ|), on the slow curve v(θ) once v has relaxed to it, so that the steps
+      don't grow with β.
+    - Dry friction: the same from one turning point to the next, each at its own time to rounding,
+      forward in time; derivatives go through the turning points.
+    - No torque, no dry friction, 0 < β ≤ 3e-4 √ε in all lanes and more than 10⁴/√ε to follow, in
+      float64 and with neither `rtol`, `atol` nor `max_steps`: averaging over turns, some 0.2 s
+      however long.
+    - τ another function of t: diffrax's `Dopri8`, or its `Kvaerno5` where β is as large as above.
 
     Under a transformation β may be hidden: the program then has both of the second line's, and
     never the third's.
@@ -94,7 +99,7 @@ def simulate(
     **Raises:** `ValueError` for a solver's options where the closed form answers, and for
     times that are not monotone where it does not; `RuntimeError` where a solver fails: too many
     steps, steps held small by the damping, a number that is not finite.  NaN, infinities, and
-    under a transformation ε ≤ 0 and β < 0, give NaN in their own lane, and its `result` says
+    under a transformation ε ≤ 0, β < 0 and c < 0, give NaN in their own lane, and its `result` says
     so.  Traced times can't be checked to be monotone: by Taylor's method they are followed in
     the order given, by diffrax they must be.
 
@@ -113,6 +118,10 @@ def simulate(
     in random scenes by Taylor's method.  Of averaging: below the error that it states, wherever
     that was checked, for β down to 1e-8: at t = 5/β some 1e-9 to 1e-7 rad where 1e-8 to 6e-6 are
     stated, and both large for a start at the top, which magnifies a rounding of θ0.
+
+    With dry friction derivatives jump where the number of turning points changes: where the
+    pendulum comes to rest just below, or just above, the edge of what friction holds.  For v0 = 0
+    those in v0 are of the motion that begins; on the other side of 0 they are others.
 
     Suzuki & Suzuki §2.3, §3.1; with a solver §5, §7, §8.
     """
@@ -175,6 +184,8 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     if dtype in (jnp.float16, jnp.bfloat16):
         raise ValueError(f"Arguments must be float32 or float64 for a solver, but got {dtype}.")
     require_monotone(ts, t0)
+    if isinstance(pendulum.tau, SampledTorque):
+        pendulum.tau.require_within(ts, t0)
     if options["dt0"] is not None:
         options["dt0"] = jnp.asarray(options["dt0"], dtype)
     shape = lanes["v0"].shape

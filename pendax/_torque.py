@@ -68,6 +68,20 @@ class SampledTorque(eqx.Module):
         inside = jnp.where((t >= self.ts[0]) & (t <= self.ts[-1]), 1, jnp.nan)
         return inside * (value + slope * (t - self.ts[i]))
 
+    def require_within(self, *times: ArrayLike) -> None:
+        """ValueError for times, where they can be seen, at which the torque is not known."""
+        known = concrete(self.ts)
+        for t in times:
+            seen = concrete(t)
+            if known is None or seen is None or seen.size == 0:
+                continue
+            outside = (seen < known[0]) | (seen > known[-1])
+            if outside.any():
+                raise ValueError(
+                    f"Argument `ts` must be within the times of the torque, {known[0]:.6g} to "
+                    f"{known[-1]:.6g}, from `t0` on, but got {seen[outside].flat[0]:.6g}."
+                )
+
     def piece(self, t: Float[Array, "..."]) -> Int[Array, "..."]:
         """The number of the straight line that t is on."""
         after = jnp.searchsorted(self.ts, t, side="right").astype(jnp.int32)

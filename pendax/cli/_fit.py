@@ -17,11 +17,12 @@ if TYPE_CHECKING:
     from .._pendulum import Pendulum
     from ..fit import Fit
 
-SUMMARY = "ε, damping, torque and initial state from a recorded motion"
+SUMMARY = "ε, friction, torque and initial state from a recorded motion"
 DESCRIPTION = """\
 Fit θ̈ + β θ̇ + ε sin θ = τ to a recorded motion: ε, β and the initial state, by least
-squares; with --torque a constant τ and with --offset an offset of the angle as well, without
-damping with --no-damping.  Print them with their standard errors and say how well the model
+squares; with --dry the dry friction c of a bearing, against the motion however slow, with
+--torque a constant τ and with --offset an offset of the angle as well, without damping with
+--no-damping.  Print them with their standard errors and say how well the model
 describes the data; write a figure of data, model and residuals, and both as numbers.
 
 Numbers are in rad and in the file's own unit of time."""
@@ -47,6 +48,7 @@ def add_arguments(parser: argparse.ArgumentParser) -> None:
         help="ε to start from (default: from the periods of the recording's cycles)")  # fmt: skip
     add("--beta", type=positive, metavar="B", help="β to start from (default: 0.001 √ε)")
     add("--no-damping", action="store_true", help="no β")
+    add("--dry", action="store_true", help="dry friction c")
     add("--torque", action="store_true", help="a constant torque τ")
     add("--offset", action="store_true", help="an offset of the angle")
     add("--sigma", type=positive, metavar="S",
@@ -153,7 +155,9 @@ def _guess(recording: Recording, arguments: argparse.Namespace) -> "Pendulum":
             )
         epsilon = float(fit_frequency(found.amplitude[swings], found.period[swings]).model.epsilon)
     beta = None if arguments.no_damping else arguments.beta or 0.0
-    return Pendulum(epsilon, beta, 0.0 if arguments.torque else None)
+    # Some tenths of a degree of amplitude a swing.
+    dry = 0.01 * epsilon if arguments.dry else None
+    return Pendulum(epsilon, beta, 0.0 if arguments.torque else None, dry)
 
 
 def _draw(recording: Recording, model: np.ndarray, path: Path, name: str) -> None:

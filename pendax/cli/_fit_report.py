@@ -8,6 +8,7 @@ import numpy as np
 
 from .._pendulum import Pendulum
 from .._results import Result
+from ..fate import settle
 from ..fit import Fit
 from ..fit._judgement import KEPT
 from ..josephson import JosephsonJunction
@@ -26,11 +27,12 @@ def fit_report(path: Path, recording: Recording, fit: Fit[Pendulum]) -> str:
         "epsilon": f"{inverse}²",
         "beta": inverse,
         "tau": f"{inverse}²",
+        "dry": f"{inverse}²",
         "v0": f"rad/{per}",
         "theta0": "rad",
         "offset": "rad",
     }
-    letters = {"epsilon": "ε", "beta": "β", "tau": "τ", "v0": "v0", "theta0": "θ0"}
+    letters = {"epsilon": "ε", "beta": "β", "tau": "τ", "dry": "c", "v0": "v0", "theta0": "θ0"}
     lines = [
         f"{path}: {ts.size} samples from {ts[0]:g} to {ts[-1]:g} {unit}",
         f"{_equation(fit)}, θ0 and v0 at t = {ts[0]:g}",
@@ -41,6 +43,7 @@ def fit_report(path: Path, recording: Recording, fit: Fit[Pendulum]) -> str:
         ),
         "",
         _period(fit, unit),
+        *_stop(fit, unit),
         *quality(fit, math.degrees(_rms(fit.residuals)), "°", _NOISE),
     ]
     if fit.velocity_residuals is not None:
@@ -167,7 +170,9 @@ def _rms(x: Any) -> float:
 
 
 def _equation(fit: Fit[Pendulum]) -> str:
-    terms = ["θ̈", *(["β θ̇"] if fit.model.beta is not None else []), "ε sin θ"]
+    viscous = ["β θ̇"] if fit.model.beta is not None else []
+    dry = ["c sign θ̇"] if fit.model.dry is not None else []
+    terms = ["θ̈", *viscous, *dry, "ε sin θ"]
     right = "τ" if fit.model.tau is not None else "0"
     return f"{' + '.join(terms)} = {right}"
 
@@ -177,6 +182,17 @@ def _period(fit: Fit[Pendulum], unit: str) -> str:
     period = 2 * math.pi / math.sqrt(epsilon)
     error = 0.5 * period * float(fit.errors.get("epsilon", 0.0)) / epsilon
     return f"small-angle period 2π/√ε = {_rounded(period, error)} ± {error:.2g} {unit}"
+
+
+def _stop(fit: Fit[Pendulum], unit: str) -> list[str]:
+    """Where dry friction will hold it, and when."""
+    if fit.model.dry is None or float(fit.model.dry) == 0:
+        return []
+    end = settle(fit.model, fit.v0, fit.theta0, throw=False)
+    if end.result != Result.successful or end.running != 0:
+        return []
+    angle = float(end.theta) + (0.0 if fit.offset is None else float(fit.offset))
+    return [f"it comes to rest at {math.degrees(angle):.4g}°, {float(end.time):.4g} {unit} later"]
 
 
 def _rounded(value: float, error: float) -> str:

@@ -15,7 +15,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
-from ..taylor import Scene, State, by_columns, order_for, switched, taylor
+from ..taylor import Scene, State, advanced, begun, by_columns, order_for, taylor
 from ._follow import CAPTURED, GOING, RUNNING, is_captured
 from ._retrapping import retrapping
 from ._saddle import saddle, well_of
@@ -70,10 +70,10 @@ def _followed(scene: Scene, start: State, most, rtol: float) -> tuple[Scalar, Re
 
     def step(carry):
         now, _ = carry
-        after = switched.advanced(method, scene, now, jnp.full_like(now.t, jnp.inf))
+        after = advanced(method, scene, now, jnp.full_like(now.t, jnp.inf))
         return after, end_of(now, after)
 
-    begin = switched.begun(scene, start, jnp.zeros_like(start.v))
+    begin = begun(scene, start, jnp.zeros_like(start.v))
     now, end = lax.while_loop(unfinished, step, (begin, end_of(begin, begin)))
     crept = _creep(scene, now)
     well = well_of(at, now.state.theta)

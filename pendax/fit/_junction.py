@@ -147,7 +147,7 @@ def _parameters(start: dict[str, float], held: dict[str, float], fixed) -> Param
     scale = {name: jnp.asarray(unit) for name in start}
     arrays = {name: jnp.asarray(x, float) for name, x in start.items()}
     positive = frozenset(NAMES[:3]) & set(start)
-    return Parameters(arrays, scale, positive, tuple(start))
+    return Parameters(arrays, scale, positive, frozenset(), tuple(start))
 
 
 def _trimmed(

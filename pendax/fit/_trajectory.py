@@ -98,6 +98,8 @@ def fit_trajectory(
     starts = whole("starts", starts, 1)
     steps = whole("steps", (100 if optimiser is None else 2000) if steps is None else steps, 1)
     recording = recording_of(ts, theta, velocity, sigma, mask, guess, unwrap)
+    if isinstance(guess.tau, SampledTorque):
+        guess.tau.require_within(recording.ts)
     dtype, shape = floating(ts, theta, *given.values()), jnp.shape(theta)
     held, parameters = _parameters(
         terms, recording, {"v0": v0, "theta0": theta0, "offset": offset}, fixed

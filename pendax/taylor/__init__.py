@@ -3,7 +3,6 @@
 τ may be a sine or samples that straight lines join; dry friction is a torque that is switched.
 """
 
-from . import _switched as switched
 from ._averaged import averaged as averaged
 from ._columns import by_columns as by_columns
 from ._columns import no_tangent as no_tangent
@@ -21,3 +20,5 @@ from ._series import State as State
 from ._series import order_for as order_for
 from ._series import polynomial as polynomial
 from ._series import taylor as taylor
+from ._switched import advanced as advanced
+from ._switched import begun as begun

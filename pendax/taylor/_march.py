@@ -118,6 +118,8 @@ def march(
     relaxes like e^(−βt) is below a rounding.  `tangents`: whether steps are to be as short as
     those of perturbations, the motion's own being at rest perhaps.
     """
+    on: Callable
+    begin: Callable
     order, longest, on, begin = order_for(rtol, atol), STABLE, until, _begun
     if is_switched(scene):
         # A step has room for one turning point, and lines are mostly short.
@@ -128,7 +130,7 @@ def march(
         for kind, n in ((taylor, order), (overdamped, 8))
     )
 
-    def to_next(at, t):
+    def to_next(at: Any, t):
         if not stiff:
             at = on(full, scene, at, t, max_steps)
         else:

@@ -25,8 +25,8 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Float
 
-from ..special._cpu import stage
 from .._torque import SampledTorque
+from ..special._cpu import stage
 from ._first_zero import first_zero
 
 Scalar = Float[Array, ""]
@@ -199,7 +199,8 @@ def method(
         slopes = [n * x for n, x in enumerate(v)][1:]
         x = -v[0] / v[1]
         x = x - polynomial(v, x) / polynomial(slopes, x)
-        return State(state.theta + x * polynomial(integrated(v[:-1]), x), jnp.zeros_like(x)), x / rate
+        theta = state.theta + x * polynomial(integrated(v[:-1]), x)
+        return State(theta, jnp.zeros_like(x)), x / rate
 
     return Method(step, size, turn, landed)
 

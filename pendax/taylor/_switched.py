@@ -84,10 +84,9 @@ def until(
 
 def advanced(method: Method, scene: Scene, at: Stretch, target: Scalar) -> Stretch:
     """A step: to `target`, the end of a line, a turning point or a release at most."""
-    end, line = target, at.line
-    if isinstance(scene.tau, SampledTorque):
-        knot = scene.tau.ts[at.line + 1]
-        end = jnp.minimum(target, knot)
+    line = at.line
+    knot = scene.tau.ts[line + 1] if isinstance(scene.tau, SampledTorque) else target
+    end = jnp.minimum(target, knot)
     tau, slope = _torque(scene, at.line, at.t)
     if scene.dry is None:
         after, state = _free(method, _smooth(scene, tau, slope, None), at, end)
