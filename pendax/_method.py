@@ -163,8 +163,8 @@ def _require_switching(pendulum: Pendulum, plain: bool, span) -> None:
         )
     if callable(pendulum.tau) and not isinstance(pendulum.tau, SampledTorque):
         raise ValueError(
-            "Argument `pendulum` must have, with dry friction, a torque that is a number or a "
-            "`SampledTorque`, but got another function of time: SampledTorque(ts, tau(ts))."
+            "Argument `pendulum` must have, with dry friction, a torque that is a number or "
+            "sampled, but got a function of time. Sample it: tau=pendax.SampledTorque(ts, tau(ts))."
         )
     if span is not None and np.any(span < 0):
         raise ValueError(

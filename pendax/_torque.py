@@ -60,7 +60,7 @@ class SampledTorque(eqx.Module):
         self.ts, self.torque = common(ts=ts, torque=torque)
         self.inertia, self.bias = inexact(inertia), inexact(bias)
 
-    def __call__(self, t: Float[Array, "..."]) -> Float[Array, "..."]:
+    def __call__(self, t: ArrayLike) -> Float[Array, "..."]:
         """τ(t), 1/s², of any shape."""
         t = jnp.asarray(t, self.ts.dtype)
         i = self.piece(t)

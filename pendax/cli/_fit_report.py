@@ -186,7 +186,7 @@ def _period(fit: Fit[Pendulum], unit: str) -> str:
 
 def _stop(fit: Fit[Pendulum], unit: str) -> list[str]:
     """Where dry friction will hold it, and when."""
-    if fit.model.dry is None or float(fit.model.dry) == 0:
+    if fit.model.dry is None or fit.v0 is None or fit.theta0 is None:
         return []
     end = settle(fit.model, fit.v0, fit.theta0, throw=False)
     if end.result != Result.successful or end.running != 0:

@@ -28,7 +28,6 @@ _LONGEST = 0.5  # radians of t: short enough for derivatives as well
 class Rest(NamedTuple):
     end: Int[Array, ""]
     well: Scalar
-    t: Scalar
 
 
 class _Creep(NamedTuple):
@@ -38,19 +37,18 @@ class _Creep(NamedTuple):
     theta: Scalar
 
 
-def rest(beta, tau, dry, start: State, most, rtol: float) -> tuple[Scalar, Rest]:
-    """The angle, with derivatives of every mode and order, and how it came there."""
+def rest(beta, tau, dry, start: State, most, rtol: float) -> tuple[tuple[Scalar, Scalar], Rest]:
+    """Angle and time, with derivatives of every mode and order, and how it came there."""
 
     def found(p):
         beta, tau, dry, theta, v, most = p
         scene, most = Scene(jnp.ones_like(beta), beta, tau, dry), most.astype(jnp.int32)
-        angle, rest = _followed(scene, State(theta, v), most, rtol)
-        return angle, lax.stop_gradient(rest)
+        return _followed(scene, State(theta, v), most, rtol)
 
     return by_columns(found, [beta, tau, dry, *start, jnp.asarray(most).astype(beta.dtype)])
 
 
-def _followed(scene: Scene, start: State, most, rtol: float) -> tuple[Scalar, Rest]:
+def _followed(scene: Scene, start: State, most, rtol: float):
     method = taylor(order_for(rtol, rtol), rtol, rtol, _LONGEST)
     at = saddle(jnp.minimum(scene.tau, 1))
     push = scene.tau - scene.dry
@@ -80,7 +78,9 @@ def _followed(scene: Scene, start: State, most, rtol: float) -> tuple[Scalar, Re
     bottom = 2 * jnp.pi * well + jnp.arcsin(jnp.minimum(scene.tau, 1))
     theta = jnp.where(crept.sure, crept.theta, now.state.theta)
     theta = jnp.where(_without(scene, at, now.state) & (now.way != 0), bottom, theta)
-    return theta, Rest(end, well_of(at, theta), now.t)
+    # That of a step that made it certain is a matter of steps.
+    t = jnp.where(now.way == 0, now.t, lax.stop_gradient(now.t))
+    return (theta, t), Rest(end, lax.stop_gradient(well_of(at, theta)))
 
 
 def _without(scene: Scene, at, state: State) -> Bool[Array, ""]:

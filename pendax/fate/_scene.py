@@ -27,5 +27,6 @@ def require_damped(pendulum: Any, what: str, positive: bool = False) -> None:
 def require_constant(pendulum: Pendulum, what: str) -> None:
     if callable(pendulum.tau):
         raise ValueError(
-            f"Argument `pendulum` must have a constant torque for {what}, but got a function."
+            f"Argument `pendulum` must have a constant torque for {what}, but got one that depends "
+            "on time."
         )

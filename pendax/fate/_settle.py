@@ -30,8 +30,8 @@ class Settled(eqx.Module):
     `running`: 0 for captured, +1 or −1 for running that way for ever; `well`: n, the number of
     turns of the bottom, 2πn + arcsin(τ/ε), whose well it is in, and 0 without a meaning where it
     runs; `theta`, rad: where it comes to rest, that bottom, or where dry friction holds it, NaN
-    where it runs; `time`, s: when all that was certain, without derivatives: with dry friction
-    when it has come to rest.  Only where `result` is `Result.successful` do they say anything:
+    where it runs; `time`, s: when it has come to rest by dry friction, else when all that was
+    certain, without derivatives.  Only where `result` is `Result.successful` do they say anything:
     else both integers are 0 and `theta` is NaN.
     """
 
@@ -61,9 +61,9 @@ def settle(
 
     With dry friction it is followed until it is at rest, anywhere in the band
     |ε sin θ − τ| ≤ c, around the top as well; or until it creeps, so damped that it never turns
-    again, towards the edge of that band.  The angle has derivatives of every mode and order in
-    all parameters, but where the number of swings changes, or whether they are enough for one
-    more turn: there it jumps.  Well numbers are then those of the angle at rest.
+    again, towards the edge of that band.  Angle and time have derivatives of every mode and order
+    in all parameters, but where the number of swings changes, or whether they are enough for one
+    more turn: there they jump.
 
     **Arguments:**
 
@@ -91,7 +91,7 @@ def settle(
     if isinstance(pendulum, Pendulum) and pendulum.dry is not None:
         require_constant(pendulum, "its end")
     else:
-        require_damped(pendulum, "its end")
+        require_damped(pendulum, "its end without dry friction `dry`")
     rtol, atol = tolerance("rtol", rtol), tolerance("atol", atol)
     most = None if max_steps is None else whole("max_steps", max_steps, 1)
     tau = 0.0 if pendulum.tau is None else pendulum.tau
@@ -147,14 +147,15 @@ def _one(rtol: float, most: int | None, epsilon, beta, tau, v0, theta0, dry=None
         well = well_of(saddle(still[1]), state.theta)
         theta = 2 * jnp.pi * well + jnp.arcsin(jnp.where(end == CAPTURED, tau, 0))
     else:
-        theta, (end, well, t) = at_rest(beta, tau, dry, start, lax.stop_gradient(limit), rtol)
+        limit = lax.stop_gradient(limit)
+        (theta, t), (end, well) = at_rest(beta, tau, dry, start, limit, rtol)
     captured = end == CAPTURED
     result = Result.where(end == GOING, Result.unsettled, Result.successful)
     return Settled(
         jnp.where(end == RUNNING, mirror, 0).astype(int),
         jnp.where(captured, mirror * well, 0).astype(int),
         jnp.where(captured & good, mirror, jnp.nan) * theta,
-        jnp.where(good, lax.stop_gradient(t / root), jnp.nan),
+        jnp.where(good, 1, jnp.nan) * (t / (lax.stop_gradient(root) if dry is None else root)),
         Result.where(good, result, Result.not_a_number),
     )
 

@@ -56,9 +56,19 @@ def way_of(scene: Scene, state: State, tau: Any) -> Scalar:
     moving = lax.stop_gradient(jnp.sign(state.v))
     if scene.dry is None:
         return moving
-    force = lax.stop_gradient(tau - scene.epsilon * jnp.sin(state.theta))
-    free = jnp.abs(force) > lax.stop_gradient(scene.dry)
-    return jnp.where(state.v == 0, jnp.where(free, jnp.sign(force), 0), moving)
+    force, held = _force(scene, state.theta, tau)
+    return jnp.where(state.v == 0, jnp.where(jnp.abs(force) > held, jnp.sign(force), 0), moving)
+
+
+def _force(scene: Scene, theta: Scalar, tau: Any) -> tuple[Scalar, Scalar]:
+    """τ − ε sin θ, and the most that friction holds.
+
+    A rounding more: what has come to the edge, or begins on it, stays, and what is let go of has
+    an acceleration.
+    """
+    weight = scene.epsilon * jnp.sin(theta)
+    rounding = 8 * jnp.finfo(theta.dtype).eps * (jnp.abs(tau) + jnp.abs(weight) + scene.dry)
+    return lax.stop_gradient((tau - weight, scene.dry + rounding))
 
 
 def momentary(scene: Scene, t: Scalar, state: State) -> tuple[Scene, Scalar]:
@@ -121,9 +131,8 @@ def _rubbing(method: Method, scene: Scene, tau, slope, at: Stretch, end: Scalar)
     after = after + jnp.where(turned, late - lax.stop_gradient(late), 0)
     state = State(*(jnp.where(turned, x, y) for x, y in zip(landed, state, strict=True)))
     # What slowed it down takes it back, unless friction alone did that.
-    force = at.way * lax.stop_gradient(reached - scene.epsilon * jnp.sin(state.theta))
-    held = force >= -lax.stop_gradient(scene.dry)
-    way = jnp.where(turned, jnp.where(held, 0, -at.way), at.way)
+    force, held = _force(scene, state.theta, reached)
+    way = jnp.where(turned, jnp.where(at.way * force >= -held, 0, -at.way), at.way)
 
     # At rest nothing moves until the torque has come to the edge of what friction holds.
     rest = at.way == 0
