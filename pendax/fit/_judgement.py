@@ -42,12 +42,13 @@ def judged(
     """
     size = jacobian.shape[1]
     freedom = count - size
-    pull, stiffness = residuals, jnp.ones_like(count)
+    pull, stiffness, bent = residuals, jnp.ones_like(count), jnp.zeros_like(count)
     if loss is not None:
         there = jnp.any(jacobian != 0, axis=1)
         pull = jax.vmap(jax.grad(loss))(residuals)
         curvature = jax.vmap(jax.grad(jax.grad(loss)))(residuals)
         stiffness = jnp.sum(jnp.where(there, curvature, 0)) / count
+        bent = jnp.sum(there & (curvature < 0)).astype(count.dtype) / count
     # Units apart, that R be as well conditioned as it can.
     norms = jnp.sqrt(jnp.sum(jacobian**2, axis=0))
     found = reduced(jacobian / norms[None, :], pull)
@@ -66,9 +67,9 @@ def judged(
     digits = float(jnp.finfo(values.dtype).eps) ** 0.6
     near = jnp.abs(left) <= stiffness * (LEFT * errors + digits * jnp.abs(values))
     # Of a loss that is bent downwards at most samples nothing is known.
-    known = jnp.where(stiffness > 0, 1, jnp.nan)
-    converged = jnp.all(near | ends) & (stiffness > 0)
-    return Judgement(errors * known, covariance * known, converged)
+    firm = (stiffness > 0) & (bent <= 0.5)
+    known = jnp.where(firm, 1, jnp.nan)
+    return Judgement(errors * known, covariance * known, jnp.all(near | ends) & firm)
 
 
 class Goodness(NamedTuple):
