@@ -13,12 +13,12 @@ from ._march import with_derivatives as with_derivatives
 from ._overdamped import is_overdamped as is_overdamped
 from ._overdamped import overdamped as overdamped
 from ._overdamped import strength as strength
-from ._series import Method as Method
 from ._series import Scene as Scene
 from ._series import Sine as Sine
 from ._series import State as State
-from ._series import order_for as order_for
-from ._series import polynomial as polynomial
-from ._series import taylor as taylor
+from ._step import Method as Method
+from ._step import order_for as order_for
+from ._step import polynomial as polynomial
+from ._step import taylor as taylor
 from ._switched import advanced as advanced
 from ._switched import begun as begun

@@ -25,7 +25,8 @@ from jaxtyping import Array, Float
 
 from ._march import March, until
 from ._passage import Passage, passage
-from ._series import Scene, State, taylor
+from ._series import Scene, State
+from ._step import taylor
 from ._table import Table, integrals, tabulated, where_integral
 
 Scalar = Float[Array, ""]

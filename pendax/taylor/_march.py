@@ -13,7 +13,8 @@ from .._torque import SampledTorque
 from . import _switched as switched
 from ._columns import by_columns
 from ._overdamped import is_overdamped, overdamped
-from ._series import STABLE, Method, Scene, State, for_tangents, largest, order_for, taylor
+from ._series import Scene, State, largest
+from ._step import STABLE, Method, for_tangents, order_for, taylor
 from ._switched import Stretch, is_switched, momentary
 
 Scalar = Float[Array, ""]

@@ -17,18 +17,8 @@ import jax
 import jax.numpy as jnp
 from jax import lax
 
-from ._series import (
-    STABLE,
-    Method,
-    Scene,
-    Sine,
-    State,
-    largest,
-    method,
-    plain,
-    sine_and_cosine,
-    torque_series,
-)
+from ._series import Scene, Sine, State, largest, sine_and_cosine, torque_series
+from ._step import STABLE, Method, method, plain
 
 # δ below which five sweeps leave less than eps: the error is 42 δ⁵ (Catalan's numbers).
 LARGEST = 1e-3 / 4

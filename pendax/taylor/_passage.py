@@ -12,7 +12,8 @@ from jax import lax
 from jaxtyping import Array, Bool, Float
 
 from ..special._cpu import stage
-from ._series import Scene, State, integrated, polynomial, scaled_series
+from ._series import Scene, State, scaled_series
+from ._step import integrated, polynomial
 
 Scalar = Float[Array, ""]
 

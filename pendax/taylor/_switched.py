@@ -22,7 +22,8 @@ from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
 from .._torque import SampledTorque
-from ._series import Method, Ramp, Scene, State
+from ._series import Ramp, Scene, State
+from ._step import Method
 
 Scalar = Float[Array, ""]
 

@@ -1,0 +1,151 @@
+"""Taylor's method: how long a step of the series may be, and where in it a motion turns.
+
+The last two terms say how far the series may be trusted, before the step is taken: no step is
+rejected.  Steps are held fixed when a step is differentiated: its derivatives are then Taylor's
+method for the variational equations, whose series converge where this one does.
+
+Jorba & Zou, Exp. Math. 14 (2005) 99.
+"""
+
+import math
+from collections.abc import Callable
+from functools import partial
+from typing import NamedTuple
+
+import jax.numpy as jnp
+from jax import lax
+from jaxtyping import Array, Float
+
+from ..special._cpu import stage
+from ._first_zero import first_zero
+from ._series import Scene, State, scaled_series
+
+Scalar = Float[Array, ""]
+
+# Steps of this length leave what decays small.
+STABLE = 2.0
+
+
+class Method(NamedTuple):
+    """A step of size h and, from (θ, v), the size that keeps it within the tolerances.
+
+    `turn(scene, state, way, most)`: the size of one on which v keeps the sign `way`, `most` at
+    most, and negative where v comes to nothing at its end; `landed(scene, state)`: from a state
+    where v is nothing but for rounding and derivatives, to where it is nothing, and the time.
+    """
+
+    step: Callable[[Scene, State, Scalar], State]
+    size: Callable[[Scene, State], Scalar]
+    turn: Callable[[Scene, State, Scalar, Scalar], Scalar]
+    landed: Callable[[Scene, State], tuple[State, Scalar]]
+
+
+def order_for(rtol: float, atol: float) -> int:
+    """Below the −½ ln(tolerance) of least work: that is flat there, and programs are smaller."""
+    return max(10, min(16, round(-0.37 * math.log(min(rtol, atol)))))
+
+
+def taylor(order: int, rtol: float, atol: float, longest: float = STABLE) -> Method:
+    """Steps of given `order`, errors within atol + rtol |y| in θ and in v each.
+
+    At rest the motion's own series says nothing, and perturbations still move like e^(λt) with
+    |λ| ≤ √ε or β: no step is longer than `longest` over the larger of these.
+    """
+
+    def quickest(scene):
+        rate = jnp.sqrt(scene.epsilon)
+        return rate if scene.beta is None else jnp.maximum(rate, scene.beta)
+
+    return method(scaled_series, order, rtol, atol, quickest, longest)
+
+
+def for_tangents(order: int, rtol: float, atol: float) -> float:
+    """The longest step after which a perturbation's own series is within the tolerance."""
+    return min(STABLE, (math.factorial(order) * min(rtol, atol)) ** (1 / order))
+
+
+_BRIEF = 4  # terms of θ around a turning point: derivatives are right up to the third
+
+
+def method(
+    series_of: Callable,
+    order: int,
+    rtol: float,
+    atol: float,
+    quickest: Callable,
+    longest: float,
+    cut: Callable = stage,
+) -> Method:
+    """Of `series_of(order, scene, state)`: a rate, the coefficients of v / rate in rate · t."""
+    series = partial(series_of, order)
+
+    def theta_after(scene, state, h):
+        rate, v = series(scene, state)
+        return state.theta + h * rate * polynomial(integrated(v[:-1]), h * rate)
+
+    def v_after(scene, state, h):
+        # On a slow manifold the series starts from a v of its own.
+        rate, v = series(scene, state)
+        return rate * (v[0] + h * rate * polynomial(v[1:], h * rate))
+
+    def step(scene, state, h):
+        return State(cut(theta_after, scene, state, h), cut(v_after, scene, state, h))
+
+    def size_of(scene, state):
+        rate, v = series(scene, state)
+        theta = integrated(v)
+        allowed = [atol + rtol * jnp.abs(x) for x in state]
+
+        def within(n):
+            # |θ_n| and |v_n| against what is allowed; θ's list starts at n = 1.
+            share = jnp.maximum(
+                jnp.abs(theta[n - 1]) / allowed[0], rate * jnp.abs(v[n]) / allowed[1]
+            )
+            return share ** (-1 / n)
+
+        own = jnp.minimum(within(order - 1), within(order)) / rate
+        return jnp.minimum(own, longest / quickest(scene))
+
+    def size(scene, state):
+        return cut(size_of, *lax.stop_gradient((scene, state)))
+
+    def turn_of(scene, state, way, most):
+        h = jnp.minimum(size_of(scene, state), most)
+        rate, v = series(scene, state)
+        v = [way * x for x in v]
+        # From rest v is t times what has no zero at the start; there it can't go the other way.
+        rest = v[0] == 0
+        started = [jnp.maximum(v[1], 0), *v[2:], jnp.zeros_like(h)]
+        v = [jnp.where(rest, x, y) for x, y in zip(started, v, strict=True)]
+        x, found = first_zero(v, h * rate)
+        h = jnp.minimum(x / rate, h)
+        return jnp.where(found, -h, h)
+
+    def turn(scene, state, way, most):
+        return cut(turn_of, *lax.stop_gradient((scene, state, way, most)))
+
+    def landed(scene, state):
+        rate, v = series_of(_BRIEF, scene, state)
+        slopes = [n * x for n, x in enumerate(v)][1:]
+        x = -v[0] / v[1]
+        x = x - polynomial(v, x) / polynomial(slopes, x)
+        theta = state.theta + x * polynomial(integrated(v[:-1]), x)
+        return State(theta, jnp.zeros_like(x)), x / rate
+
+    return Method(step, size, turn, landed)
+
+
+def plain(function: Callable, *arguments):
+    """No cut: for steps that are few."""
+    return function(*arguments)
+
+
+def integrated(v):
+    return [x / (n + 1) for n, x in enumerate(v)]
+
+
+def polynomial(coefficients, h):
+    total = coefficients[-1]
+    for x in coefficients[-2::-1]:
+        total = total * h + x
+    return total
