@@ -43,7 +43,7 @@ def test_tracers_and_other_leaves_pass():
 
 @pytest.mark.parametrize("function", [frequency, lambda p, v0: pendax.time_to(p, 1.0, v0)])
 def test_closed_forms_refuse_damping_and_torque(function):
-    with pytest.raises(ValueError, match=r"neither damping nor torque .* got one with `beta`"):
+    with pytest.raises(ValueError, match=r"neither friction nor torque .* got one with `beta`"):
         function(Pendulum(1.0, beta=0.1), 1.0)
 
 

@@ -67,7 +67,7 @@ def test_never_is_nan_there_alone():
     assert jnp.isnan(time_to(Pendulum(), jnp.array([3.1, 4.0, -1.0]), 2.0)).tolist() == [0, 1, 1]
     assert jnp.isnan(time_to(Pendulum(), 0.1, 0.0))
     assert time_to(Pendulum(), 0.0, 0.0) == 0
-    with pytest.raises(ValueError, match="neither damping nor torque"):
+    with pytest.raises(ValueError, match="neither friction nor torque"):
         time_to(Pendulum(1.0, 0.1), 0.1, 1.0)
 
 
