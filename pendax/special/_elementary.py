@@ -1,4 +1,4 @@
-"""sin and cos, sinh, ln and the angle on the short intervals where they are needed.
+"""sin and cos, sinh, ln, the angle and RC on the short intervals where they are needed.
 
 XLA's own sin, cos, log and atan2 call a scalar library for float64 on the CPU, 8 to
 25 ns a value; these polynomials vectorise and take about 1.  Each is Chebyshev
@@ -46,6 +46,13 @@ _ANGLE = (
 _HALF_ROOT = (
     0.25000000000000006, 0.12499999999981398, 0.0781250001009262, 0.0546874794914367,
     0.04101760555237452, 0.03212874347216268, 0.028558124459520454,
+)  # fmt: skip
+# (RC(1, 1 + e) − 1) / e, |e| <= 0.1716: 0.08 eps
+_RC = (
+    -0.3333333333333334, 0.20000000000000007, -0.14285714285686704, 0.11111111111085184,
+    -0.09090909105875784, 0.07692307706376199, -0.0666666362535714, 0.05882350082436502,
+    -0.052634515780280854, 0.04762180806347612, -0.043333244665510036, 0.03986370168335579,
+    -0.040554400356205084, 0.03778825757799395,
 )  # fmt: skip
 
 
@@ -137,3 +144,23 @@ def _angle_jvp(primals, tangents):
 def half_root(x: FloatArray) -> FloatArray:
     """2 (1 − √(1 − x)) / x for 0 <= x <= 0.02945, without the root."""
     return 1 + x * _polynomial(x, _HALF_ROOT)
+
+
+def rc_near(e: FloatArray) -> FloatArray:
+    """RC(1, 1 + e) = arctan √e / √e for |e| <= 0.17."""
+    return 1 + e * _polynomial(e, _RC)
+
+
+def rc_middle(e: FloatArray, y: FloatArray) -> FloatArray:
+    """RC(1, y), y = 1 + e, for 0.5 <= y <= 2: one duplication brings it near."""
+    r = 1 + jnp.sqrt(y)
+    return 2 / r * rc_near(e / (r * r))
+
+
+def rc_any(e: FloatArray, y: FloatArray) -> FloatArray:
+    """RC(1, y) = artanh √(1 − y) / √(1 − y), y = 1 + e, for 0 < y <= 2."""
+    low = y < 0.5
+    middle = rc_middle(jnp.where(low, -0.5, e), jnp.where(low, 0.5, y))
+    below = jnp.where(low, y, 0.25)
+    s = jnp.sqrt(1 - below)
+    return jnp.where(low, 0.5 * log((1 + s) * (1 + s) / below) / s, middle)

@@ -1,0 +1,141 @@
+"""The incomplete integrals of the first and second kind, F(φ | m) and E(φ | m)."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jax import lax
+from jaxtyping import Array, ArrayLike, Float
+
+from ._complete import _e, _k
+from ._duplication import rd, rf, rf_and_rd
+from ._either import with_parameter
+from ._integral import integral
+from ._quarters import reduced
+
+FloatArray = Float[Array, "..."]
+
+
+def ellipkinc(
+    phi: ArrayLike, m: ArrayLike | None = None, *, m1: ArrayLike | None = None
+) -> FloatArray:
+    """Incomplete elliptic integral of the first kind, F(φ | m) = ∫₀^φ dθ / √(1 − m sin²θ).
+
+    **Arguments:**
+
+    - `phi`: the amplitude φ, rad, any real numbers.
+    - `m`: the parameter k² (not the modulus k), m ≤ 1; beyond, as long as m sin²φ ≤ 1 and
+      |φ| ≤ π/2.
+    - `m1`: the complement 1 − m, instead of `m`, for m so near to 1 that 1 − m has lost its
+      digits.
+
+    Shapes broadcast.
+
+    **Returns:** F, odd and quasi-periodic in φ: F(φ + π) = F(φ) + 2 K.  For m = 1 ±inf from
+    |φ| = π/2 on, for which its float stands; NaN (value and gradient) outside the domain.
+
+    **Raises:** `ValueError` unless exactly one of `m` and `m1` is given.
+
+    Within 10 eps of |F| + |φ ∂F/∂φ| + |m ∂F/∂m| for |φ| up to 1e6, m from -1e10, m1 down to
+    1e-300 (float32: 1e4, 1e-36).  DLMF 19.2.4, 19.25.5; the first integral of the Spanish
+    source's table 5.2.1, in Jacobi's form [`arcsn`][].
+    """
+    return with_parameter(_kinc, m, m1, phi=phi)
+
+
+def ellipeinc(
+    phi: ArrayLike, m: ArrayLike | None = None, *, m1: ArrayLike | None = None
+) -> FloatArray:
+    """Incomplete elliptic integral of the second kind, E(φ | m) = ∫₀^φ √(1 − m sin²θ) dθ.
+
+    **Arguments:** as [`ellipkinc`][].
+
+    **Returns:** E, odd and quasi-periodic in φ: E(φ + π) = E(φ) + 2 E(m); NaN (value and
+    gradient) outside the domain.
+
+    **Raises:** `ValueError` unless exactly one of `m` and `m1` is given.
+
+    Within 10 eps of |E| + |φ ∂E/∂φ| + |m ∂E/∂m|, as [`ellipkinc`][].  DLMF 19.2.5, computed
+    by 19.25.9 for m < 0 and by 19.25.10 for m ≥ 0, in which all terms are positive.
+    """
+    return with_parameter(_einc, m, m1, phi=phi)
+
+
+def squared_delta(s: FloatArray, c: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
+    """1 − m sin²φ, without a cancellation for m ≤ 1."""
+    return jnp.where((m > 0.5) & (m1 >= 0), m1 + m * (c * c), 1 - m * (s * s))
+
+
+def per_turn(turns: FloatArray, complete, *parameters: FloatArray) -> FloatArray:
+    """2 turns complete(parameters…), 0 where there are none."""
+    none = turns == 0
+
+    def some(turns, *parameters):
+        safe = [jnp.where(none, 0, x) for x in parameters[:-1]]
+        return jnp.where(none, 0, 2 * turns * complete(*safe, jnp.where(none, 1, parameters[-1])))
+
+    return lax.cond(jnp.all(none), lambda *x: jnp.zeros_like(turns), some, turns, *parameters)
+
+
+def _first(phi, m, m1):
+    turns, s, c = reduced(phi)
+    return per_turn(turns, _k, m, m1) + s * rf(
+        c * c, squared_delta(s, c, m, m1), jnp.ones_like(phi)
+    )
+
+
+def _first_integrand(phi, m, m1):
+    _, s, c = reduced(phi)
+    return 1 / jnp.sqrt(squared_delta(s, c, m, m1))
+
+
+def _second(phi, m, m1):
+    turns, s, c = reduced(phi)
+    square, one = squared_delta(s, c, m, m1), jnp.ones_like(phi)
+    by_delta = (m > 0) & (m1 >= 0)
+    pair = jnp.where(by_delta, one, square), jnp.where(by_delta, square, one)
+    of_rf, of_rd = jnp.where(by_delta, m1, 1), jnp.where(by_delta, m1, -1) * (m / 3)
+    value = rf_and_rd(c * c, *pair, of_rf, of_rd * (s * s))
+    value = value + jnp.where(by_delta, m * c / jnp.sqrt(square), 0)
+    return per_turn(turns, _e, m, m1) + s * value
+
+
+def _second_integrand(phi, m, m1):
+    _, s, c = reduced(phi)
+    return jnp.sqrt(squared_delta(s, c, m, m1))
+
+
+def _second_by_m(phi, m, m1):
+    turns, s, c = reduced(phi)
+    third = rd(c * c, squared_delta(s, c, m, m1), jnp.ones_like(phi))
+    return per_turn(turns, _e_by_m, m, m1) - 1 / 6 * (s * s * s) * third
+
+
+def _second_by_m_integrand(phi, m, m1):
+    _, s, c = reduced(phi)
+    return -0.5 * (s * s) / jnp.sqrt(squared_delta(s, c, m, m1))
+
+
+def _e_by_m(m, m1):
+    return jax.jvp(_e, (m, m1), (jnp.ones_like(m), -jnp.ones_like(m)))[1]
+
+
+_f_inside = integral(_first, _first_integrand)
+_e_inside = integral(
+    _second, _second_integrand, by_m=integral(_second_by_m, _second_by_m_integrand)
+)
+
+
+@jax.jit
+def _kinc(phi: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
+    quarter = jnp.abs(phi) >= np.asarray(np.pi / 2, phi.dtype)
+    value = jnp.where((m1 == 0) & quarter, jnp.inf * phi, _f_inside(phi, m, m1))
+    value = jnp.where(jnp.isinf(phi) & (m1 >= 0) & ~jnp.isinf(m1), phi, value)
+    return jnp.where(jnp.isinf(m1) & (m1 > 0) & ~jnp.isinf(phi), 0 * phi, value)
+
+
+@jax.jit
+def _einc(phi: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
+    endless = jnp.isinf(phi) & (m1 >= 0)
+    value = jnp.where(endless, phi, _e_inside(phi, m, m1))
+    far = jnp.isinf(m1) & (m1 > 0)
+    return jnp.where(far, jnp.where(phi == 0, 0, jnp.inf * jnp.sign(phi)), value)

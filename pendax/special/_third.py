@@ -1,0 +1,191 @@
+"""The integrals of the third kind: Π(n; φ | m), and Carlson's RJ for every p."""
+
+import jax
+import jax.numpy as jnp
+import numpy as np
+from jaxtyping import Array, ArrayLike, Float
+
+from .._arrays import common, widened
+from ._carlson import rc
+from ._domain import fenced
+from ._duplication import ordered, rf, rj, root
+from ._either import with_parameter
+from ._incomplete import per_turn, squared_delta
+from ._integral import integral
+from ._quarters import reduced
+
+FloatArray = Float[Array, "..."]
+
+
+def ellippiinc(
+    n: ArrayLike, phi: ArrayLike, m: ArrayLike | None = None, *, m1: ArrayLike | None = None
+) -> FloatArray:
+    """Incomplete elliptic integral of the third kind,
+    Π(n; φ | m) = ∫₀^φ dθ / ((1 − n sin²θ) √(1 − m sin²θ)).
+
+    **Arguments:**
+
+    - `n`: the characteristic, any real numbers.  **The sign is that of DLMF, Boost and
+      Mathematica; the Spanish source's H(k, n, φ) of table 5.2.1 has 1 + n sin²θ and is
+      Π(−n; φ | k²).**
+    - `phi`: the amplitude φ, rad, any real numbers.
+    - `m`: the parameter k² (not the modulus k), m ≤ 1; or `m1` = 1 − m instead, for m so
+      near to 1 that 1 − m has lost its digits.
+
+    Shapes broadcast.
+
+    **Returns:** Π, odd and quasi-periodic in φ; past a pole, n sin²φ > 1, the Cauchy
+    principal value; inf on the pole.  For m = 1 ±inf from |φ| = π/2 on, for which its
+    float stands; NaN (value and gradient) outside the domain.
+
+    **Raises:** `ValueError` unless exactly one of `m` and `m1` is given.
+
+    Within 10 eps of |Π| + |n ∂Π/∂n| + |φ ∂Π/∂φ| + |m ∂Π/∂m| for |φ| up to 1e6, m and n from
+    -1e10, m1 down to 1e-300 (float32: 1e4, 1e-36).  DLMF 19.2.7, 19.25.14, 19.7.
+    """
+    return with_parameter(_piinc, m, m1, phi=phi, n=n)
+
+
+def ellippi(
+    n: ArrayLike, m: ArrayLike | None = None, *, m1: ArrayLike | None = None
+) -> FloatArray:
+    """Complete elliptic integral of the third kind, Π(n | m) = Π(n; π/2 | m).
+
+    **Arguments:** as [`ellippiinc`][], sign of n included; shapes broadcast.
+
+    **Returns:** Π: inf at n = 1; for n > 1 the Cauchy principal value; at m = 1 inf for
+    n < 1 and −inf above; NaN (value and gradient) for m > 1.
+
+    **Raises:** `ValueError` unless exactly one of `m` and `m1` is given.
+
+    Within 10 eps of |Π| + |n ∂Π/∂n| + |m ∂Π/∂m|, domain as [`ellippiinc`][].  DLMF 19.2.8.
+    """
+    return with_parameter(_pi, m, m1, n=n)
+
+
+def elliprj(x: ArrayLike, y: ArrayLike, z: ArrayLike, p: ArrayLike) -> FloatArray:
+    """Carlson's RJ(x, y, z, p) = 3/2 ∫₀^∞ dt / (√((t + x)(t + y)(t + z)) (t + p)).
+
+    **Arguments:** `x`, `y`, `z` ≥ 0, one of them 0 at most, `p` ≠ 0.  Shapes broadcast.
+
+    **Returns:** RJ, the Cauchy principal value where p < 0; inf where two are 0; 0 where one
+    is inf; NaN (value and gradient) for p = 0 and where x, y or z is negative.
+
+    Within 20 eps of |RJ| + Σ |x ∂RJ/∂x| for arguments from 1e-300 to 1e300 (float32: 1e±36)
+    where the result is a float; derivatives in an argument that is 0 as [`elliprf`][].
+    DLMF 19.16.2, 19.20.14; by Carlson's duplication, p out of range by 19.21.12.
+    """
+    return widened(_rj)(*common(x=x, y=y, z=z, p=p))
+
+
+def third(
+    s: FloatArray, c: FloatArray, n: FloatArray, m: FloatArray, m1: FloatArray
+) -> FloatArray:
+    """Π for a sine, and a cosine ≥ 0.
+
+    Everywhere F + n/3 s³ RJ(c², Δ², 1, p), p = 1 − n s², moved by DLMF 19.21.12 so that there
+    is nothing to cancel:
+
+        n < −1     F / (1 − n) − n / (1 − n) (s c RC(Δ², p q) + m1 / (1 − n) s³/3 RJ(…, q)),
+                   q = c² + m1 s² / (1 − n); every term is positive
+        p < 0      s RC(c² Δ², p q) − m/3n s³ RJ(…, q),  q = 1 − (m / n) s²
+    """
+    cc, ss, one = c * c, s * s, jnp.ones_like(s)
+    square = squared_delta(s, c, m, m1)
+    p = jnp.where(n > 0.5, (1 - n) + n * cc, 1 - n * ss)
+    low, past = n < -1, p < 0
+    share = 1 / (1 - jnp.where(low, n, 0))
+    far = jnp.where(past, n, 1)
+    q = jnp.where(low, cc + m1 * ss * share, p)
+    q = jnp.where(past, ((far - 1) + square) / far, q)
+    of_rf = jnp.where(past, 0, share)
+    of_rj = jnp.where(low, (1 - share) * (m1 * share), n)
+    of_rj = 1 / 3 * ss * jnp.where(past, -m / far, of_rj)
+    of_rc = jnp.where(low, (1 - share) * c, jnp.where(past, 1, 0))
+    x = jnp.where(low, square, jnp.where(past, cc * square, 1))
+    y = jnp.where(low | past, p * q, 1)
+    on_it = p == 0
+    q, y = jnp.where(on_it, 1, q), jnp.where(on_it, 1, y)
+    value = of_rf * rf(cc, square, one) + of_rj * rj(cc, square, one, q) + of_rc * rc(x, y)
+    return s * jnp.where(on_it, jnp.inf, value)
+
+
+def _whole(n, m, m1):
+    """Π(n | m); sin and cos are here exact."""
+    return third(jnp.ones_like(n), jnp.zeros_like(n), n, m, m1)
+
+
+def _incomplete(phi, n, m, m1):
+    turns, s, c = reduced(phi)
+    return per_turn(turns, _whole, n, m, m1) + third(s, c, n, m, m1)
+
+
+def _integrand(phi, n, m, m1):
+    _, s, c = reduced(phi)
+    p = jnp.where(n > 0.5, (1 - n) + n * (c * c), 1 - n * (s * s))
+    return 1 / (p * jnp.sqrt(squared_delta(s, c, m, m1)))
+
+
+_pi_of_phi = integral(_incomplete, _integrand)
+_pi_whole = integral(_whole)
+
+
+@jax.jit
+def _piinc(phi: FloatArray, n: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
+    endless = (m1 == 0) & (jnp.abs(phi) >= np.asarray(np.pi / 2, phi.dtype))
+    endless = endless | (jnp.isinf(phi) & (m1 > 0))
+    value = jnp.where(endless, jnp.where(n < 1, jnp.inf, -jnp.inf) * phi, _pi_of_phi(phi, n, m, m1))
+    return jnp.where(jnp.isinf(m1) & (m1 > 0), 0 * phi, value)
+
+
+@jax.jit
+def _pi(n: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
+    n, m, m1 = jnp.broadcast_arrays(n, m, m1)
+    valid = (m1 > 0) & (n != 1) & ~jnp.isinf(n) & ~jnp.isinf(m)
+    outside = jnp.where(n > 1, -jnp.inf, jnp.where(jnp.isinf(n), 0, jnp.inf))
+    outside = jnp.where(m1 > 0, jnp.where(n == 1, jnp.inf, 0), outside)
+    outside = jnp.where((m1 >= 0) & ~jnp.isnan(n), outside, jnp.nan)
+    safe = (jnp.where(valid, x, at) for x, at in ((n, 0), (m, 0), (m1, 1)))
+    return fenced(_pi_whole(*safe), valid, outside, n, m)
+
+
+@jax.jit
+def _rj(x: FloatArray, y: FloatArray, z: FloatArray, p: FloatArray) -> FloatArray:
+    ((_, middle, _),) = ordered(x, y, z)
+    none_below = (x >= 0) & (y >= 0) & (z >= 0) & (p != 0) & ~jnp.isnan(p)
+    endless = jnp.isinf(x) | jnp.isinf(y) | jnp.isinf(z) | jnp.isinf(p)
+    valid = none_below & ~endless & (middle > 0)
+    outside = jnp.where(middle > 0, 0, jnp.where(endless, jnp.nan, jnp.inf * p))
+    outside = jnp.where(none_below, outside, jnp.nan)
+    safe = (jnp.where(valid, t, 1) for t in (x, y, z, p))
+    return fenced(_rj_inside(*safe), valid, outside, x, y, z, p)
+
+
+def _rj_inside(x, y, z, p):
+    """With x ≤ y ≤ z, DLMF 19.21.12 about the largest for a large p, about the middle one for
+    p < 0, where it leaves 3 RF − (q − y) RJ(q): that again about the smallest, which makes it
+    a sum of positive terms."""
+    ((x, y, z),) = ordered(x, y, z)
+    past, large = p < 0, p > 8 * z
+    size, above = jnp.where(past, -p, 1), jnp.where(large, p, 9 * z)
+    by_z = (z - x) * ((z - y) / (above - z))
+    share = (y + size) / (z + size)
+    q = y + (z - y) * ((y - x) / (y + size))
+    after = x + (z - x) * share
+    first = rf(x, y, z)
+    third_ = rj(x, y, z, jnp.where(large, z + by_z, jnp.where(past, after, p)))
+
+    root_y, root_z = root(y), root(z)
+    ratio = (root(q) / root_z) * (root(after) / root_y)
+    rc_ = rc(
+        jnp.where(large, x * (y / z), 1),
+        jnp.where(large, above * ((z + by_z) / z), jnp.where(past, ratio * ratio, 1)),
+    )
+    of_large = (3 * (first - rc_) - by_z * third_) / (above - z)
+    positive = (z - y) / (z + size) * (root(x) / root_y / root_z * rc_)
+    positive = share * first + positive + ((z - y) / (z + size)) * (z - x) * share / 3 * third_
+    limit = 0.1 * float(jnp.finfo(p.dtype).max)
+    beyond = jnp.where(past, jnp.minimum((size / z) * (q / y), limit), 1)
+    principal = rc(jnp.where(past, x / y, 1), -beyond) / root_z
+    of_past = 3 / (y + size) * (principal - positive)
+    return jnp.where(large, of_large, jnp.where(past, of_past, third_))
