@@ -2,11 +2,13 @@
 
 import jax
 import jax.numpy as jnp
+from jax import lax
 from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common, widened
 from ._domain import fenced
 from ._duplication import finite, ordered, rd, rf, root
+from ._elementary import reciprocal
 
 FloatArray = Float[Array, "..."]
 
@@ -104,7 +106,7 @@ def rc(x: FloatArray, y: FloatArray) -> FloatArray:
     size = jnp.where(below, -y, y)
     apart = jnp.where(below, x + size, 1)
     value = rf(jnp.where(below, apart, x), size, size)
-    return jnp.where(below, root(jnp.where(below, x, 1) / apart), 1) * value
+    return jnp.where(below, root(jnp.where(below, x, 1)) * root(reciprocal(apart)), 1) * value
 
 
 @jax.jit
@@ -122,7 +124,14 @@ def _rg(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
     none_below, none_endless = _sorted_out(x, y, z)
     valid = none_below & none_endless
     outside = jnp.where(none_below, jnp.inf, jnp.nan)
-    return fenced(rg(*_replaced(valid, x, y, z)), valid, outside, x, y, z)
+    safe = _replaced(valid, x, y, z)
+    # RG is of degree 1/2.  The two larger are brought to sizes whose product is 1, so that
+    # nothing leaves the range of the floats on the way.
+    ((_, middle, highest),) = ordered(*map(lax.stop_gradient, safe))
+    middle = jnp.where(middle > 0, middle, jnp.where(highest > 0, highest, 1))
+    size = jnp.sqrt(middle) * jnp.sqrt(jnp.maximum(highest, middle))
+    value = jnp.sqrt(size) * rg(*(t * (1 / size) for t in safe))
+    return fenced(value, valid, outside, x, y, z)
 
 
 @jax.custom_jvp

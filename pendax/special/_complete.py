@@ -57,7 +57,7 @@ def ellipe(m: ArrayLike) -> Float[Array, "..."]:
 
 def _inside(which, slope):
     """K or E where m1 > 0, in blocks.  Its derivatives are those of its steps, and `slope`
-    for m < -1, where those would form 1 / m1^2."""
+    for m < -1 and m > 1/2, where those would form 1 / m1^2."""
 
     def steps(m, m1):
         return _complete(m, jnp.where(m1 > 0, m1, 1))[which]
@@ -70,7 +70,8 @@ def _inside(which, slope):
 
     @call.defjvp
     def _(primals, tangents):
-        far = primals[0] < -1
+        m, m1 = primals
+        far = (m < -1) | ((m > 0.5) & (m1 > 0))
         near = [jnp.where(far, safe, x) for x, safe in zip(primals, (0, 1), strict=True)]
         moved = [jnp.where(far, 0, x) for x in tangents]
         by_steps = jax.jvp(jax.jit(steps), near, moved)[1]

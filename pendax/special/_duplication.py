@@ -19,7 +19,7 @@ from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
 from ._cpu import in_blocks
-from ._elementary import rc_any, rc_middle, rc_near
+from ._elementary import rc_any, rc_middle, rc_near, reciprocal
 from ._slope import LARGEST
 
 FloatArray = Float[Array, "..."]
@@ -82,30 +82,41 @@ def _differentiated(steps: Callable, loop: Callable, long: Callable) -> Callable
     """The kernel of `steps`; its derivatives are kernels of theirs, and theirs are those of
     loop(count, *arguments), the same as `steps` but compiled faster."""
 
-    def along(function, i):
+    def along(function, i, relative=False):
+        """Its derivative in the i-th argument, or that times the argument, which does not
+        leave the range of the floats on the way."""
+
         def slope(count, *arguments):
-            tangents = tuple(jnp.full_like(x, i == j) for j, x in enumerate(arguments))
-            return jax.jvp(partial(function, count), arguments, tangents)[1]
+            arguments = jnp.broadcast_arrays(*arguments)
+            by = arguments[i] if relative else jnp.ones_like(arguments[i])
+            tangents = tuple(by * (i == j) for j in range(len(arguments)))
+            return jax.jvp(partial(function, count), tuple(arguments), tangents)[1]
 
         return slope
 
     @cache
     def slope(i):
-        kernel = jax.custom_jvp(_kernel(along(steps, i), along(loop, i)))
+        kernel = _kernel(along(steps, i, True), along(loop, i, True))
 
-        @kernel.defjvp
+        @jax.custom_jvp
+        def call(*arguments):
+            x = arguments[i]
+            rest = kernel(*arguments) * reciprocal(jnp.where(x == 0, 1, x))
+            return finite(jnp.where(x == 0, -jnp.inf, rest))
+
+        @call.defjvp
         def _(primals, tangents):
             again = partial(along(loop, i), _steps(primals[0].dtype)[1])
-            return kernel(*primals), jax.jvp(jax.jit(again), primals, tangents)[1]
+            return call(*primals), jax.jvp(jax.jit(again), primals, tangents)[1]
 
-        return kernel
+        return call
 
     call = jax.custom_jvp(_kernel(steps, long))
 
     @partial(call.defjvp, symbolic_zeros=True)
     def _(primals, tangents):
         moved = [i for i, x in enumerate(tangents) if not isinstance(x, SymbolicZero)]
-        return call(*primals), sum(finite(slope(i)(*primals)) * tangents[i] for i in moved)
+        return call(*primals), sum(slope(i)(*primals) * tangents[i] for i in moved)
 
     return call
 
@@ -124,7 +135,7 @@ def _rf_steps(count, x, y, z):
 
 
 def _rf_series(x, y, z):
-    r = 3 / (x + y + z)
+    r = 3 * reciprocal(x + y + z)
     x, y = 1 - x * r, 1 - y * r
     z = -(x + y)
     e2, e3 = x * y - z * z, x * y * z
@@ -135,7 +146,7 @@ def _rf_series(x, y, z):
 def _rd_step(at, _=None):
     x, y, z, total, quarter, lift = at
     (_, _, c), step, after = _means(x, y, z)
-    term = quarter / (c / lift * (z + step))
+    term = quarter * reciprocal(c / lift * (z + step))
     return (*after, total + term, 0.25 * quarter, lift), None
 
 
@@ -164,11 +175,12 @@ def _rd_steps(count, *arguments):
 
 
 def _rd_loop(count, *arguments):
-    return _rd_ended(*lax.scan(_rd_step, _rd_begun(*arguments), length=count)[0])
+    at = _rd_begun(*jnp.broadcast_arrays(*arguments))
+    return _rd_ended(*lax.scan(_rd_step, at, length=count)[0])
 
 
 def _rj_series(x, y, z, p, weight):
-    r = 5 / (x + y + z + 2 * p)
+    r = 5 * reciprocal(x + y + z + 2 * p)
     x, y, z = 1 - x * r, 1 - y * r, 1 - z * r
     p = -0.5 * (x + y + z)
     xyz, pp = x * y * z, p * p
@@ -187,7 +199,7 @@ def _rj_step(at, _=None, rc=rc_any):
     x, y, z, p, total, quarter, lift, apart = at
     (a, b, c), step, after = _means(x, y, z)
     d = root(p)
-    ra, rb, rg = 1 / (d + a), 1 / (d + b), 1 / (d + c)
+    ra, rb, rg = (reciprocal(d + t) for t in (a, b, c))
     # e = (p - x)(p - y)(p - z) / ((d + a)(d + b)(d + c))^2, the differences those of the
     # start, and 1 + e without a cancellation where p is small.
     of_x, of_y, of_z = (quarter * far * r * r for far, r in zip(apart, (ra, rb, rg), strict=True))
@@ -218,7 +230,8 @@ def _rj_steps(count, *arguments):
 
 
 def _rj_loop(count, *arguments):
-    return _rj_ended(*lax.scan(_rj_step, _rj_begun(*arguments), length=count)[0])
+    at = _rj_begun(*jnp.broadcast_arrays(*arguments))
+    return _rj_ended(*lax.scan(_rj_step, at, length=count)[0])
 
 
 # RD(x, y, z); x, y >= 0, not both 0, z > 0.

@@ -141,6 +141,18 @@ def _angle_jvp(primals, tangents):
     return angle(sin, cos), cos * tangents[0] - sin * tangents[1]
 
 
+@jax.custom_jvp
+def reciprocal(x: FloatArray) -> FloatArray:
+    """1 / x, whose derivative does not form 1 / x², and is 0 where 1 / x is."""
+    return 1 / x
+
+
+@reciprocal.defjvp
+def _reciprocal_jvp(primals, tangents):
+    r = reciprocal(*primals)
+    return r, -r * jnp.where(r == 0, 0, r * tangents[0])
+
+
 def half_root(x: FloatArray) -> FloatArray:
     """2 (1 − √(1 − x)) / x for 0 <= x <= 0.02945, without the root."""
     return 1 + x * _polynomial(x, _HALF_ROOT)
@@ -163,4 +175,4 @@ def rc_any(e: FloatArray, y: FloatArray) -> FloatArray:
     middle = rc_middle(jnp.where(low, -0.5, e), jnp.where(low, 0.5, y))
     below = jnp.where(low, y, 0.25)
     s = jnp.sqrt(1 - below)
-    return jnp.where(low, 0.5 * log((1 + s) * (1 + s) / below) / s, middle)
+    return jnp.where(low, 0.5 * log((1 + s) * (1 + s) * reciprocal(below)) / s, middle)

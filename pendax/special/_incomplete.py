@@ -60,9 +60,21 @@ def ellipeinc(
     return with_parameter(_einc, m, m1, phi=phi)
 
 
-def squared_delta(s: FloatArray, c: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
-    """1 − m sin²φ, without a cancellation for m ≤ 1."""
-    return jnp.where((m > 0.5) & (m1 >= 0), m1 + m * (c * c), 1 - m * (s * s))
+@jax.custom_jvp
+def one_less(x: FloatArray, x1: FloatArray, s: FloatArray, c: FloatArray) -> FloatArray:
+    """1 − x sin² of a sine and cosine, x1 = 1 − x; without a cancellation for x ≤ 1.  To
+    derivatives x1 is 1 − x, as in [`integral`][]: their −sin² would be −1 + cos²."""
+    by_cosine = (x > 0.5) & (s * s > c * c)
+    return jnp.where(by_cosine, x1 + x * (c * c), 1 - x * (s * s))
+
+
+@one_less.defjvp
+def _one_less_jvp(primals, tangents):
+    x, _, s, c = primals
+    dx, _, ds, dc = tangents
+    by_cosine = (x > 0.5) & (s * s > c * c)
+    turned = 2 * x * jnp.where(by_cosine, c * dc, -s * ds)
+    return one_less(*primals), turned - s * s * dx
 
 
 def per_turn(turns: FloatArray, complete, *parameters: FloatArray) -> FloatArray:
@@ -79,18 +91,18 @@ def per_turn(turns: FloatArray, complete, *parameters: FloatArray) -> FloatArray
 def _first(phi, m, m1):
     turns, s, c = reduced(phi)
     return per_turn(turns, _k, m, m1) + s * rf(
-        c * c, squared_delta(s, c, m, m1), jnp.ones_like(phi)
+        c * c, one_less(m, m1, s, c), jnp.ones_like(phi)
     )
 
 
 def _first_integrand(phi, m, m1):
     _, s, c = reduced(phi)
-    return 1 / jnp.sqrt(squared_delta(s, c, m, m1))
+    return 1 / jnp.sqrt(one_less(m, m1, s, c))
 
 
 def _second(phi, m, m1):
     turns, s, c = reduced(phi)
-    square, one = squared_delta(s, c, m, m1), jnp.ones_like(phi)
+    square, one = one_less(m, m1, s, c), jnp.ones_like(phi)
     by_delta = (m > 0) & (m1 >= 0)
     pair = jnp.where(by_delta, one, square), jnp.where(by_delta, square, one)
     of_rf, of_rd = jnp.where(by_delta, m1, 1), jnp.where(by_delta, m1, -1) * (m / 3)
@@ -101,18 +113,18 @@ def _second(phi, m, m1):
 
 def _second_integrand(phi, m, m1):
     _, s, c = reduced(phi)
-    return jnp.sqrt(squared_delta(s, c, m, m1))
+    return jnp.sqrt(one_less(m, m1, s, c))
 
 
 def _second_by_m(phi, m, m1):
     turns, s, c = reduced(phi)
-    third = rd(c * c, squared_delta(s, c, m, m1), jnp.ones_like(phi))
+    third = rd(c * c, one_less(m, m1, s, c), jnp.ones_like(phi))
     return per_turn(turns, _e_by_m, m, m1) - 1 / 6 * (s * s * s) * third
 
 
 def _second_by_m_integrand(phi, m, m1):
     _, s, c = reduced(phi)
-    return -0.5 * (s * s) / jnp.sqrt(squared_delta(s, c, m, m1))
+    return -0.5 * (s * s) / jnp.sqrt(one_less(m, m1, s, c))
 
 
 def _e_by_m(m, m1):
@@ -128,7 +140,8 @@ _e_inside = integral(
 @jax.jit
 def _kinc(phi: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
     quarter = jnp.abs(phi) >= np.asarray(np.pi / 2, phi.dtype)
-    value = jnp.where((m1 == 0) & quarter, jnp.inf * phi, _f_inside(phi, m, m1))
+    endless = lax.stop_gradient(jnp.inf * phi)
+    value = jnp.where((m1 == 0) & quarter, endless, _f_inside(phi, m, m1))
     value = jnp.where(jnp.isinf(phi) & (m1 >= 0) & ~jnp.isinf(m1), phi, value)
     return jnp.where(jnp.isinf(m1) & (m1 > 0) & ~jnp.isinf(phi), 0 * phi, value)
 
@@ -138,4 +151,4 @@ def _einc(phi: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
     endless = jnp.isinf(phi) & (m1 >= 0)
     value = jnp.where(endless, phi, _e_inside(phi, m, m1))
     far = jnp.isinf(m1) & (m1 > 0)
-    return jnp.where(far, jnp.where(phi == 0, 0, jnp.inf * jnp.sign(phi)), value)
+    return jnp.where(far, jnp.where(phi == 0, 0, lax.stop_gradient(jnp.inf * phi)), value)

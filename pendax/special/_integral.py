@@ -8,6 +8,7 @@ import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 
 from ._cpu import in_blocks
+from ._duplication import finite
 
 
 def integral(
@@ -44,7 +45,7 @@ def integral(
         tangent = jnp.zeros_like(y)
         for i, x in enumerate(tangents[:-1]):
             if not isinstance(x, SymbolicZero):
-                tangent = tangent + slope(i, len(primals))(*primals) * x
+                tangent = tangent + finite(slope(i, len(primals))(*primals)) * x
         return y, tangent
 
     return call

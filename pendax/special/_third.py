@@ -3,14 +3,16 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax import lax
 from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common, widened
 from ._carlson import rc
 from ._domain import fenced
 from ._duplication import ordered, rf, rj, root
+from ._elementary import reciprocal
 from ._either import with_parameter
-from ._incomplete import per_turn, squared_delta
+from ._incomplete import one_less, per_turn
 from ._integral import integral
 from ._quarters import reduced
 
@@ -83,31 +85,31 @@ def third(
 ) -> FloatArray:
     """Π for a sine, and a cosine ≥ 0.
 
-    Everywhere F + n/3 s³ RJ(c², Δ², 1, p), p = 1 − n s², moved by DLMF 19.21.12 so that there
-    is nothing to cancel:
+    Everywhere F + n/3 s³ RJ(c², Δ², 1, p), p = 1 − n s², moved by DLMF 19.21.12 so that no
+    large terms are left to cancel:
 
-        n < −1     F / (1 − n) − n / (1 − n) (s c RC(Δ², p q) + m1 / (1 − n) s³/3 RJ(…, q)),
-                   q = c² + m1 s² / (1 − n); every term is positive
-        p < 0      s RC(c² Δ², p q) − m/3n s³ RJ(…, q),  q = 1 − (m / n) s²
+        p < 0; n < −1, m ≥ 0    s RC(c² Δ², p q) − m/3n s³ RJ(…, q),  q = 1 − (m / n) s²
+        n < −1, m < 0           F / (1 − n) − n / (1 − n) (s c RC(Δ², p q)
+                                + m1 / (1 − n) s³/3 RJ(…, q)),  q = c² + m1 s² / (1 − n)
     """
     cc, ss, one = c * c, s * s, jnp.ones_like(s)
-    square = squared_delta(s, c, m, m1)
-    p = jnp.where(n > 0.5, (1 - n) + n * cc, 1 - n * ss)
-    low, past = n < -1, p < 0
-    share = 1 / (1 - jnp.where(low, n, 0))
-    far = jnp.where(past, n, 1)
-    q = jnp.where(low, cc + m1 * ss * share, p)
-    q = jnp.where(past, ((far - 1) + square) / far, q)
-    of_rf = jnp.where(past, 0, share)
-    of_rj = jnp.where(low, (1 - share) * (m1 * share), n)
-    of_rj = 1 / 3 * ss * jnp.where(past, -m / far, of_rj)
-    of_rc = jnp.where(low, (1 - share) * c, jnp.where(past, 1, 0))
-    x = jnp.where(low, square, jnp.where(past, cc * square, 1))
-    y = jnp.where(low | past, p * q, 1)
+    square, p = one_less(m, m1, s, c), one_less(n, 1 - n, s, c)
+    by_one = (p < 0) | ((n < -1) & (m >= 0))
+    by_cosine = (n < -1) & (m < 0)
+    share = 1 / (1 - jnp.where(by_cosine, n, 0))
+    divisor = jnp.where(by_one, n, -1)
+    ratio = m / divisor
+    q = jnp.where(by_one, one_less(ratio, ((divisor - 1) + m1) / divisor, s, c), p)
+    q = jnp.where(by_cosine, cc + m1 * ss * share, q)
+    of_rf = jnp.where(by_one, 0, share)
+    of_rj = jnp.where(by_one, -ratio, jnp.where(by_cosine, (1 - share) * share * m1, n))
+    of_rc = jnp.where(by_one, 1, jnp.where(by_cosine, (1 - share) * c, 0))
+    x = jnp.where(by_one, cc * square, jnp.where(by_cosine, square, 1))
+    y = jnp.where(by_one | by_cosine, p * q, 1)
     on_it = p == 0
     q, y = jnp.where(on_it, 1, q), jnp.where(on_it, 1, y)
-    value = of_rf * rf(cc, square, one) + of_rj * rj(cc, square, one, q) + of_rc * rc(x, y)
-    return s * jnp.where(on_it, jnp.inf, value)
+    value = of_rf * rf(cc, square, one) + 1 / 3 * of_rj * ss * rj(cc, square, one, q)
+    return s * jnp.where(on_it, jnp.inf, value + of_rc * rc(x, y))
 
 
 def _whole(n, m, m1):
@@ -122,8 +124,7 @@ def _incomplete(phi, n, m, m1):
 
 def _integrand(phi, n, m, m1):
     _, s, c = reduced(phi)
-    p = jnp.where(n > 0.5, (1 - n) + n * (c * c), 1 - n * (s * s))
-    return 1 / (p * jnp.sqrt(squared_delta(s, c, m, m1)))
+    return 1 / (one_less(n, 1 - n, s, c) * jnp.sqrt(one_less(m, m1, s, c)))
 
 
 _pi_of_phi = integral(_incomplete, _integrand)
@@ -134,7 +135,8 @@ _pi_whole = integral(_whole)
 def _piinc(phi: FloatArray, n: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
     endless = (m1 == 0) & (jnp.abs(phi) >= np.asarray(np.pi / 2, phi.dtype))
     endless = endless | (jnp.isinf(phi) & (m1 > 0))
-    value = jnp.where(endless, jnp.where(n < 1, jnp.inf, -jnp.inf) * phi, _pi_of_phi(phi, n, m, m1))
+    at_end = lax.stop_gradient(jnp.where(n < 1, jnp.inf, -jnp.inf) * phi)
+    value = jnp.where(endless, at_end, _pi_of_phi(phi, n, m, m1))
     return jnp.where(jnp.isinf(m1) & (m1 > 0), 0 * phi, value)
 
 
@@ -155,37 +157,43 @@ def _rj(x: FloatArray, y: FloatArray, z: FloatArray, p: FloatArray) -> FloatArra
     none_below = (x >= 0) & (y >= 0) & (z >= 0) & (p != 0) & ~jnp.isnan(p)
     endless = jnp.isinf(x) | jnp.isinf(y) | jnp.isinf(z) | jnp.isinf(p)
     valid = none_below & ~endless & (middle > 0)
-    outside = jnp.where(middle > 0, 0, jnp.where(endless, jnp.nan, jnp.inf * p))
+    outside = jnp.where(middle > 0, 0, jnp.where(endless, jnp.nan, lax.stop_gradient(jnp.inf * p)))
     outside = jnp.where(none_below, outside, jnp.nan)
     safe = (jnp.where(valid, t, 1) for t in (x, y, z, p))
     return fenced(_rj_inside(*safe), valid, outside, x, y, z, p)
 
 
 def _rj_inside(x, y, z, p):
-    """With x ≤ y ≤ z, DLMF 19.21.12 about the largest for a large p, about the middle one for
-    p < 0, where it leaves 3 RF − (q − y) RJ(q): that again about the smallest, which makes it
-    a sum of positive terms."""
+    """With x ≤ y ≤ z, DLMF 19.21.12 about z for a large p, about y for p < 0, where it leaves
+    3 RF − (q − y) RJ(q): that again about x, which makes it a sum of positive terms.
+
+    Both in units of z: products of two arguments may leave the range of the floats."""
     ((x, y, z),) = ordered(x, y, z)
     past, large = p < 0, p > 8 * z
     size, above = jnp.where(past, -p, 1), jnp.where(large, p, 9 * z)
-    by_z = (z - x) * ((z - y) / (above - z))
-    share = (y + size) / (z + size)
-    q = y + (z - y) * ((y - x) / (y + size))
-    after = x + (z - x) * share
-    first = rf(x, y, z)
-    third_ = rj(x, y, z, jnp.where(large, z + by_z, jnp.where(past, after, p)))
-
-    root_y, root_z = root(y), root(z)
-    ratio = (root(q) / root_z) * (root(after) / root_y)
-    rc_ = rc(
-        jnp.where(large, x * (y / z), 1),
-        jnp.where(large, above * ((z + by_z) / z), jnp.where(past, ratio * ratio, 1)),
-    )
-    of_large = (3 * (first - rc_) - by_z * third_) / (above - z)
-    positive = (z - y) / (z + size) * (root(x) / root_y / root_z * rc_)
-    positive = share * first + positive + ((z - y) / (z + size)) * (z - x) * share / 3 * third_
+    unit = jnp.where(past | large, reciprocal(z), 1)
     limit = 0.1 * float(jnp.finfo(p.dtype).max)
-    beyond = jnp.where(past, jnp.minimum((size / z) * (q / y), limit), 1)
-    principal = rc(jnp.where(past, x / y, 1), -beyond) / root_z
-    of_past = 3 / (y + size) * (principal - positive)
-    return jnp.where(large, of_large, jnp.where(past, of_past, third_))
+    over_z = reciprocal(z + size)
+    share = (y + size) * over_z
+    over_y, over_p = reciprocal(y + size), reciprocal(above - z)
+    z_share, z_over_y, z_over_p = z * over_z, z * over_y, z * over_p
+    x, y, z = x * unit, y * unit, jnp.where(past | large, 1, z)
+    q = y + (1 - y) * ((y - x) * z_over_y)
+    q_past = x + (1 - x) * share
+    q_large = 1 + (1 - x) * ((1 - y) * z_over_p)
+    first = rf(x, y, z)
+    last = rj(x, y, z, jnp.where(large, q_large, jnp.where(past, q_past, p * unit)))
+
+    per_y = reciprocal(y)
+    far = jnp.minimum(above * unit, limit) * q_large
+    rc_ = rc(
+        jnp.where(large, x * y, 1), jnp.where(large, far, jnp.where(past, q * q_past * per_y, 1))
+    )
+    of_large = 3 * (first - rc_) - (q_large - 1) * last
+    positive = root(x) * root(per_y) * rc_ + 1 / 3 * (1 - x) * share * last
+    positive = share * first + (1 - y) * z_share * positive
+    below = jnp.minimum(size * unit * (q * per_y), limit)
+    principal = rc(jnp.where(past, x * per_y, 1), jnp.where(past, -below, 1))
+    of_past = 3 * (principal - positive)
+    degree = jnp.where(large, of_large * over_p, jnp.where(past, of_past * over_y, last * unit))
+    return degree * root(unit)
