@@ -87,7 +87,7 @@ def _value(
     rests = k == 0
     size = jnp.where(rests, 1, k)
     first, last = (
-        inverse(jnp.clip(s / size, -1, 1), w / size, c, 1 - m1, m1)
+        inverse(jnp.clip(s / size, -1, 1), (w / size) ** 2, c * c)
         for s, w, c in ((s0, w0, c0), (s1, w1, c1))
     )
     omega = angular_frequency(epsilon, v0, theta0) / root

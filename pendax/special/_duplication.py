@@ -89,7 +89,7 @@ def _differentiated(steps: Callable, loop: Callable, long: Callable) -> Callable
         def slope(count, *arguments):
             arguments = jnp.broadcast_arrays(*arguments)
             by = arguments[i] if relative else jnp.ones_like(arguments[i])
-            tangents = tuple(by * (i == j) for j in range(len(arguments)))
+            tangents = tuple(by if i == j else 0 * by for j in range(len(arguments)))
             return jax.jvp(partial(function, count), tuple(arguments), tangents)[1]
 
         return slope

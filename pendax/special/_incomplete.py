@@ -85,14 +85,17 @@ def per_turn(turns: FloatArray, complete, *parameters: FloatArray) -> FloatArray
         safe = [jnp.where(none, 0, x) for x in parameters[:-1]]
         return jnp.where(none, 0, 2 * turns * complete(*safe, jnp.where(none, 1, parameters[-1])))
 
-    return lax.cond(jnp.all(none), lambda *x: jnp.zeros_like(turns), some, turns, *parameters)
+    def nothing(turns, *parameters):
+        return jnp.zeros(
+            jnp.broadcast_shapes(*(x.shape for x in (turns, *parameters))), turns.dtype
+        )
+
+    return lax.cond(jnp.all(none), nothing, some, turns, *parameters)
 
 
 def _first(phi, m, m1):
     turns, s, c = reduced(phi)
-    return per_turn(turns, _k, m, m1) + s * rf(
-        c * c, one_less(m, m1, s, c), jnp.ones_like(phi)
-    )
+    return per_turn(turns, _k, m, m1) + s * rf(c * c, one_less(m, m1, s, c), jnp.ones_like(phi))
 
 
 def _first_integrand(phi, m, m1):

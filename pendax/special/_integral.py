@@ -45,7 +45,8 @@ def integral(
         tangent = jnp.zeros_like(y)
         for i, x in enumerate(tangents[:-1]):
             if not isinstance(x, SymbolicZero):
-                tangent = tangent + finite(slope(i, len(primals))(*primals)) * x
+                by = slope(i, len(primals))(*primals)
+                tangent = tangent + (by if i == 0 and integrand else finite(by)) * x
         return y, tangent
 
     return call

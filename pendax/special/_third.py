@@ -10,8 +10,8 @@ from .._arrays import common, widened
 from ._carlson import rc
 from ._domain import fenced
 from ._duplication import ordered, rf, rj, root
-from ._elementary import reciprocal
 from ._either import with_parameter
+from ._elementary import reciprocal
 from ._incomplete import one_less, per_turn
 from ._integral import integral
 from ._quarters import reduced
@@ -48,9 +48,7 @@ def ellippiinc(
     return with_parameter(_piinc, m, m1, phi=phi, n=n)
 
 
-def ellippi(
-    n: ArrayLike, m: ArrayLike | None = None, *, m1: ArrayLike | None = None
-) -> FloatArray:
+def ellippi(n: ArrayLike, m: ArrayLike | None = None, *, m1: ArrayLike | None = None) -> FloatArray:
     """Complete elliptic integral of the third kind, Π(n | m) = Π(n; π/2 | m).
 
     **Arguments:** as [`ellippiinc`][], sign of n included; shapes broadcast.
@@ -80,9 +78,7 @@ def elliprj(x: ArrayLike, y: ArrayLike, z: ArrayLike, p: ArrayLike) -> FloatArra
     return widened(_rj)(*common(x=x, y=y, z=z, p=p))
 
 
-def third(
-    s: FloatArray, c: FloatArray, n: FloatArray, m: FloatArray, m1: FloatArray
-) -> FloatArray:
+def third(s: FloatArray, c: FloatArray, n: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
     """Π for a sine, and a cosine ≥ 0.
 
     Everywhere F + n/3 s³ RJ(c², Δ², 1, p), p = 1 − n s², moved by DLMF 19.21.12 so that no
@@ -165,35 +161,41 @@ def _rj(x: FloatArray, y: FloatArray, z: FloatArray, p: FloatArray) -> FloatArra
 
 def _rj_inside(x, y, z, p):
     """With x ≤ y ≤ z, DLMF 19.21.12 about z for a large p, about y for p < 0, where it leaves
-    3 RF − (q − y) RJ(q): that again about x, which makes it a sum of positive terms.
-
-    Both in units of z: products of two arguments may leave the range of the floats."""
+    3 RF − (q − y) RJ(q): that again about x, which makes it a sum of positive terms."""
     ((x, y, z),) = ordered(x, y, z)
     past, large = p < 0, p > 8 * z
     size, above = jnp.where(past, -p, 1), jnp.where(large, p, 9 * z)
-    unit = jnp.where(past | large, reciprocal(z), 1)
-    limit = 0.1 * float(jnp.finfo(p.dtype).max)
-    over_z = reciprocal(z + size)
-    share = (y + size) * over_z
-    over_y, over_p = reciprocal(y + size), reciprocal(above - z)
-    z_share, z_over_y, z_over_p = z * over_z, z * over_y, z * over_p
-    x, y, z = x * unit, y * unit, jnp.where(past | large, 1, z)
-    q = y + (1 - y) * ((y - x) * z_over_y)
-    q_past = x + (1 - x) * share
-    q_large = 1 + (1 - x) * ((1 - y) * z_over_p)
-    first = rf(x, y, z)
-    last = rj(x, y, z, jnp.where(large, q_large, jnp.where(past, q_past, p * unit)))
+    over_y, over_z, over_p = (reciprocal(t) for t in (y + size, z + size, above - z))
+    share, rest = (y + size) * over_z, (z - y) * over_z
+    q = y + (z - y) * ((y - x) * over_y)
+    q_past = x + (z - x) * share
+    q_large = z + (z - x) * ((z - y) * over_p)
 
-    per_y = reciprocal(y)
-    far = jnp.minimum(above * unit, limit) * q_large
+    unit = jnp.where(past | large, lax.stop_gradient(_unit(y, z)), 1)
+    x, y, z, p, q, q_past, q_large = (t * unit for t in (x, y, z, p, q, q_past, q_large))
+    per_y, per_z = reciprocal(y), reciprocal(z)
+    first = rf(x, y, z)
+    last = rj(x, y, z, jnp.where(large, q_large, jnp.where(past, q_past, p)))
+
+    limit = 0.1 * float(jnp.finfo(p.dtype).max)
+    far = jnp.minimum(above * unit, limit) * (q_large * per_z)
+    between = (q * per_z) * (q_past * per_y)
     rc_ = rc(
-        jnp.where(large, x * y, 1), jnp.where(large, far, jnp.where(past, q * q_past * per_y, 1))
+        jnp.where(large, x * (y * per_z), 1), jnp.where(large, far, jnp.where(past, between, 1))
     )
-    of_large = 3 * (first - rc_) - (q_large - 1) * last
-    positive = root(x) * root(per_y) * rc_ + 1 / 3 * (1 - x) * share * last
-    positive = share * first + (1 - y) * z_share * positive
-    below = jnp.minimum(size * unit * (q * per_y), limit)
-    principal = rc(jnp.where(past, x * per_y, 1), jnp.where(past, -below, 1))
+    of_large = 3 * (first - rc_) - (q_large - z) * last
+    positive = root(x) * root(per_y) * root(per_z) * rc_ + 1 / 3 * (z - x) * share * last
+    positive = share * first + rest * positive
+    below = jnp.minimum(jnp.minimum(size * unit, limit) * per_z * (q * per_y), limit)
+    principal = rc(jnp.where(past, x * per_y, 1), jnp.where(past, -below, 1)) * root(per_z)
     of_past = 3 * (principal - positive)
     degree = jnp.where(large, of_large * over_p, jnp.where(past, of_past * over_y, last * unit))
-    return degree * root(unit)
+    return degree * jnp.sqrt(unit)
+
+
+def _unit(y, z):
+    """1 / z, for products of RJ and an argument to stay floats; where y would not, some
+    power of 2."""
+    exponent = jnp.finfo(z.dtype).maxexp
+    away = jnp.where(z > 2.0 ** (0.6 * exponent), 2.0 ** (-0.3 * exponent), jnp.ones_like(z))
+    return jnp.where(y > 2.0 ** (-0.9 * exponent) * z, 1 / z, away)
