@@ -1,8 +1,8 @@
 """Maximal and mean errors by region, pendax and SciPy side by side.
 
 In eps = 2^-52, of |f| + |u df/du| for the Jacobi functions (the error that a rounding of
-u makes, and of the value itself), of |f| for K and E, and of |f| + |x df/dx| + |m df/dm|
-for the nome and arcsn.
+u makes, and of the value itself), of |f| for K and E, and of |f| + the sum of |x df/dx|
+over all arguments elsewhere.
 """
 
 from collections.abc import Callable
@@ -15,6 +15,8 @@ import scipy.special
 from cases import cases
 
 from pendax import special
+
+from . import integrals
 
 EPS = 2.0**-52
 
@@ -31,6 +33,8 @@ def report(seed: int, points: int) -> int:
         show(name, region, ours, theirs)
     for name, region, ours in inverse_errors(points, seed):
         show(name, region, ours, None)
+    for row in integrals.accuracy(points, seed):
+        show(*row)
     return 0
 
 

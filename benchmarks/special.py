@@ -1,7 +1,6 @@
 """Error against run time of the elliptic functions, and the bars they are held to."""
 
 from functools import partial
-from typing import NamedTuple
 
 import jax
 import jax.numpy as jnp
@@ -10,18 +9,12 @@ import scipy.special
 
 from pendax import special
 
+from . import integrals
 from .accuracy import EPS, complete_errors, jacobi_error
 from .peers import compiled, library
-from .timing import compile_time, side_by_side
+from .timing import Row, compile_time, side_by_side
 
 SAMPLE = 2000  # elements whose error is looked at
-
-
-class Row(NamedTuple):
-    work: str
-    library: str
-    seconds: float  # an element
-    error: float | None  # largest, in eps × scale
 
 
 def report(seed: int, size: int, rounds: int, check: bool) -> int:
@@ -35,11 +28,12 @@ def report(seed: int, size: int, rounds: int, check: bool) -> int:
         *complete(m, rounds),
         *gradients(u, m, rounds),
     ]
+    more = integrals.speed(size, max(3, rounds // 3), seed)
     print("\n| work | library | ns an element | max error, eps × scale |\n|---|---|---|---|")
-    for row in rows:
+    for row in rows + more:
         error = "" if row.error is None else f"{row.error:.2g}"
         print(f"| {row.work} | {row.library} | {row.seconds * 1e9:.1f} | {error} |")
-    missed = bars(rows) + compiling(u, m) + small_arrays()
+    missed = bars(rows, integrals.ratios(more)) + compiling(u, m) + small_arrays()
     return 1 if check and missed else 0
 
 
@@ -141,7 +135,7 @@ def gradients(u, m, rounds) -> list[Row]:
     return [Row(f"ellipj, {name}", "pendax", spent[name] / u.size, None) for name in calls]
 
 
-def bars(rows: list[Row]) -> int:
+def bars(rows: list[Row], more: list[tuple[str, float, float]]) -> int:
     """Prints each ratio beside its bar; the number that are missed."""
     time = {(row.work, row.library): row.seconds for row in rows}
     ours = time["ellipj", "pendax"]
@@ -165,6 +159,7 @@ def bars(rows: list[Row]) -> int:
             time.get(("ellipj", "elliptic-functions"), np.nan) / ours,
             30,
         ),
+        *more,
     ]
     print("\n| times as fast | measured | bar | |\n|---|---|---|---|")
     missed = 0

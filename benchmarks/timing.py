@@ -2,9 +2,17 @@
 
 import time
 from collections.abc import Callable
+from typing import NamedTuple
 
 import jax
 import numpy as np
+
+
+class Row(NamedTuple):
+    work: str
+    library: str
+    seconds: float  # an element
+    error: float | None  # largest, in eps × scale
 
 
 def side_by_side(calls: dict[str, Callable], rounds: int) -> dict[str, float]:

@@ -65,7 +65,7 @@ def one_less(x: FloatArray, x1: FloatArray, s: FloatArray, c: FloatArray) -> Flo
     """1 − x sin² of a sine and cosine, x1 = 1 − x; without a cancellation for x ≤ 1.  To
     derivatives x1 is 1 − x, as in [`integral`][]: their −sin² would be −1 + cos²."""
     by_cosine = (x > 0.5) & (s * s > c * c)
-    return jnp.where(by_cosine, x1 + x * (c * c), 1 - x * (s * s))
+    return jnp.where(by_cosine, x1 + x * (c * c), 1 - (x * s) * s)
 
 
 @one_less.defjvp
@@ -73,8 +73,8 @@ def _one_less_jvp(primals, tangents):
     x, _, s, c = primals
     dx, _, ds, dc = tangents
     by_cosine = (x > 0.5) & (s * s > c * c)
-    turned = 2 * x * jnp.where(by_cosine, c * dc, -s * ds)
-    return one_less(*primals), turned - s * s * dx
+    turned = jnp.where(by_cosine, (x * c) * dc, -(x * s) * ds)
+    return one_less(*primals), 2 * turned - s * s * dx
 
 
 def per_turn(turns: FloatArray, complete, *parameters: FloatArray) -> FloatArray:
@@ -109,7 +109,7 @@ def _second(phi, m, m1):
     by_delta = (m > 0) & (m1 >= 0)
     pair = jnp.where(by_delta, one, square), jnp.where(by_delta, square, one)
     of_rf, of_rd = jnp.where(by_delta, m1, 1), jnp.where(by_delta, m1, -1) * (m / 3)
-    value = rf_and_rd(c * c, *pair, of_rf, of_rd * (s * s))
+    value = rf_and_rd(c * c, *pair, of_rf, (of_rd * s) * s)
     value = value + jnp.where(by_delta, m * c / jnp.sqrt(square), 0)
     return per_turn(turns, _e, m, m1) + s * value
 
