@@ -83,12 +83,20 @@ def test_close_to_one(function, name, dtype):
 
 def test_third_kind(dtype):
     columns = legendre_points(dtype, 12, 13)
-    check(ellippiinc, legendre("pi", "m"), columns, dtype, second=dtype == np.float64)
+    check(ellippiinc, legendre("pi", "m"), columns, dtype, second=False)
 
 
 def test_complete_third_kind(dtype):
     n, _, m = legendre_points(dtype, 16, 14)
-    check(ellippi, legendre("pi_complete", "m"), [n, m], dtype, second=dtype == np.float64)
+    check(ellippi, legendre("pi_complete", "m"), [n, m], dtype, second=False)
+
+
+@pytest.mark.full
+def test_second_derivatives_of_the_third_kind():
+    dtype = np.dtype("float64")
+    n, phi, m = legendre_points(dtype, 12, 14)
+    check(ellippi, legendre("pi_complete", "m"), [n, m], dtype, second=True)
+    check(ellippiinc, legendre("pi", "m"), [n, phi, m], dtype, second=True)
 
 
 def test_third_kind_close_to_one():
@@ -173,6 +181,15 @@ def test_edges():
         assert function(0.0, 0.7) == 0
         with pytest.raises(ValueError, match="one without the other"):
             function(0.3, 0.7, m1=0.3)
+    # Where a value is infinite, there is no derivative to follow.
+    assert jnp.isnan(jnp.stack(jax.grad(ellipkinc, (0, 1))(points.QUARTER, 1.0))).all()
+    assert ellippiinc(1.0, 2.0, 0.5) == jnp.inf
+    assert jnp.isnan(jnp.stack(jax.grad(ellippiinc, (0, 1, 2))(1.0, 2.0, 0.5))).all()
+    assert ellippiinc(1.0, 2.0, 1.0) == jnp.inf
+    assert ellippiinc(jnp.inf, 0.3, 0.5) == 0
+    assert jnp.isnan(jax.grad(ellipkinc)(3.2, 1.5))
+    for gradient in (jax.grad(ellipeinc, 1), jax.jacfwd(ellipeinc, 1)):
+        assert gradient(2.0, 1.0) < -1e300
     bad = jax.vmap(jax.grad(ellipeinc, (0, 1)))(jnp.array([1.0, 1.0]), jnp.array([2.0, 0.5]))
     assert all(jnp.isnan(x[0]) and jnp.isfinite(x[1]) for x in bad)
 

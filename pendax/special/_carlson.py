@@ -1,13 +1,14 @@
 """Carlson's symmetric integrals of the first and second kind."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common, widened
-from ._domain import fenced
-from ._duplication import finite, ordered, rd, rf, root
+from ._duplication import finite, kernel, ordered, rd, rf, rf_steps, root, sum_of_steps
 from ._elementary import reciprocal
 
 FloatArray = Float[Array, "..."]
@@ -70,78 +71,45 @@ def elliprg(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> FloatArray:
     return widened(_rg)(*common(x=x, y=y, z=z))
 
 
-def _replaced(valid, *arguments):
-    return [jnp.where(valid, x, 1) for x in arguments]
+_rf, _rd = jax.jit(rf), jax.jit(rd)
 
 
-def _sorted_out(*arguments):
-    """No argument below 0, and no inf among them."""
-    none_below, none_endless = True, True
-    for x in arguments:
-        none_below = none_below & (x >= 0)
-        none_endless = none_endless & ~jnp.isinf(x)
-    return none_below, none_endless
-
-
-@jax.jit
-def _rf(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
-    none_below, none_endless = _sorted_out(x, y, z)
-    ((_, middle, _),) = ordered(x, y, z)
-    valid = none_below & none_endless & (middle > 0)
-    outside = jnp.where(none_endless, jnp.inf, jnp.where(middle > 0, 0, jnp.nan))
-    outside = jnp.where(none_below, outside, jnp.nan)
-    return fenced(rf(*_replaced(valid, x, y, z)), valid, outside, x, y, z)
-
-
-@jax.jit
-def _rc(x: FloatArray, y: FloatArray) -> FloatArray:
-    valid = (x >= 0) & (y != 0) & ~jnp.isinf(x) & ~jnp.isinf(y)
-    outside = jnp.where((x >= 0) & (jnp.isinf(x) | jnp.isinf(y)), 0, jnp.nan)
-    return fenced(rc(*_replaced(valid, x, y)), valid, outside, x, y)
-
-
+@jax.custom_jvp
 def rc(x: FloatArray, y: FloatArray) -> FloatArray:
-    """RC inside its domain; for y < 0 by DLMF 19.2.20."""
+    return _rc_kernel(x, y)
+
+
+@rc.defjvp
+def _rc_jvp(primals, tangents):
+    return rc(*primals), jax.jvp(partial(_rc_by, rf), primals, tangents)[1]
+
+
+def _rc_by(rf, x, y):
+    """For y < 0 by DLMF 19.2.20."""
     below = y < 0
-    size = jnp.where(below, -y, y)
-    apart = jnp.where(below, x + size, 1)
-    value = rf(jnp.where(below, apart, x), size, size)
+    value, apart = rf(*_three(x, y)), jnp.where(below, x - y, 1)
     return jnp.where(below, root(jnp.where(below, x, 1)) * root(reciprocal(apart)), 1) * value
 
 
-@jax.jit
-def _rd(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
-    none_below, none_endless = _sorted_out(x, y, z)
-    finite_value = (z > 0) & ((x > 0) | (y > 0))
-    valid = none_below & none_endless & finite_value
-    outside = jnp.where(none_endless, jnp.inf, jnp.where(finite_value, 0, jnp.nan))
-    outside = jnp.where(none_below, outside, jnp.nan)
-    return fenced(rd(*_replaced(valid, x, y, z)), valid, outside, x, y, z)
+def _three(x, y):
+    """The arguments of RF."""
+    size = jnp.where(y < 0, -y, y)
+    return jnp.where(y < 0, x - y, x), size, size
 
 
-@jax.jit
-def _rg(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
-    none_below, none_endless = _sorted_out(x, y, z)
-    valid = none_below & none_endless
-    outside = jnp.where(none_below, jnp.inf, jnp.nan)
-    safe = _replaced(valid, x, y, z)
-    # RG is of degree 1/2.  The two larger are brought to sizes whose product is 1, so that
-    # nothing leaves the range of the floats on the way.
-    ((_, middle, highest),) = ordered(*map(lax.stop_gradient, safe))
-    middle = jnp.where(middle > 0, middle, jnp.where(highest > 0, highest, 1))
-    size = jnp.sqrt(middle) * jnp.sqrt(jnp.maximum(highest, middle))
-    value = jnp.sqrt(size) * rg(*(t * (1 / size) for t in safe))
-    return fenced(value, valid, outside, x, y, z)
+def _rc_value(count, x, y):
+    value = _rc_by(partial(rf_steps, count), x, y)
+    value = jnp.where(jnp.isinf(x) | jnp.isinf(y), 0, value)
+    return jnp.where((x >= 0) & (y != 0) & ~jnp.isnan(y), value, jnp.nan)
+
+
+_rc_kernel = kernel(_rc_value, _rc_value, _three)
+_rc = jax.jit(rc)
 
 
 @jax.custom_jvp
 def rg(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
-    """RG inside its domain."""
-    ((x, y, z),) = ordered(x, y, z)
-    flat = y == 0
-    y = jnp.where(flat, 1, y)
-    rest = (1 / 3 * (y - x) * rd(x, z, y)) * (z - y) + root(x) * (root(z) / root(y))
-    return 0.5 * jnp.where(flat, root(z), y * rf(x, y, z) + rest)
+    return _rg_kernel(x, y, z)
 
 
 @rg.defjvp
@@ -149,11 +117,36 @@ def _rg_jvp(primals, tangents):
     # ∂RG/∂x = RF/4 − x RD(y, z, x)/12 (DLMF 19.18.1 and 19.21.10), in which there is little to
     # cancel but for the largest argument.  Its own is from the sum of x ∂RG/∂x, RG/2.
     (x, y, z), (dx, dy, dz) = ordered(*primals, tangents)
-    value = rg(*primals)
+    value, unit = rg(*primals), _unit(x, y, z)
+    x, y, z = x * unit, y * unit, z * unit
+    first = finite(0.25 * rf(x, y, z))
+    of_x = first - x / 12 * finite(rd(y, z, x))
+    of_y = first - y / 12 * finite(rd(x, z, y))
+    of_z = (0.5 * value * jnp.sqrt(unit) - x * of_x - y * of_y) / z
+    return value, jnp.sqrt(unit) * (of_x * dx + of_y * dy + of_z * dz)
+
+
+def _unit(x, y, z):
+    """RG is of degree 1/2.  By this the two larger get sizes whose product is 1, so that
+    nothing leaves the range of the floats on the way."""
+    ((_, y, z),) = ordered(*map(lax.stop_gradient, (x, y, z)))
+    y = jnp.where(y > 0, y, jnp.where(z > 0, z, 1))
+    return 1 / (jnp.sqrt(y) * jnp.sqrt(jnp.maximum(y, z)))
+
+
+def _rg_value(count, x, y, z):
+    arguments, unit = (x, y, z), _unit(x, y, z)
+    ((x, y, z),) = ordered(x * unit, y * unit, z * unit)
     flat = y == 0
-    middle = jnp.where(flat, 1, y)
-    first = jnp.where(flat, jnp.inf, rf(x, middle, z))
-    of_x = finite(0.25 * first) - x / 12 * finite(rd(middle, z, x))
-    of_y = finite(0.25 * first) - y / 12 * rd(x, z, middle)
-    of_z = (0.5 * value - x * of_x - y * of_y) / z
-    return value, of_x * dx + of_y * dy + of_z * dz
+    y = jnp.where(flat, 1, y)
+    rest = jnp.sqrt(x) * (jnp.sqrt(z) / jnp.sqrt(y))
+    value = rest + sum_of_steps(count, x, z, y, y, 1 / 3 * (y - x) * (z - y))
+    value = 0.5 * jnp.where(flat, jnp.sqrt(z), value) / jnp.sqrt(unit)
+    endless = jnp.isinf(arguments[0] + arguments[1] + arguments[2])
+    value = jnp.where(endless, jnp.inf, value)
+    none_below = jnp.minimum(arguments[0], jnp.minimum(arguments[1], arguments[2])) >= 0
+    return jnp.where(none_below, value, jnp.nan)
+
+
+_rg_kernel = kernel(_rg_value, _rg_value)
+_rg = jax.jit(rg)

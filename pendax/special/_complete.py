@@ -72,8 +72,9 @@ def _inside(which, slope):
     def _(primals, tangents):
         m, m1 = primals
         far = (m < -1) | ((m > 0.5) & (m1 > 0))
-        near = [jnp.where(far, safe, x) for x, safe in zip(primals, (0, 1), strict=True)]
-        moved = [jnp.where(far, 0, x) for x in tangents]
+        near = ~far & (m1 > 0)
+        moved = [jnp.where(near, x, 0) for x in tangents]
+        near = [jnp.where(near, x, safe) for x, safe in zip(primals, (0, 1), strict=True)]
         by_steps = jax.jvp(jax.jit(steps), near, moved)[1]
         away = [jnp.where(far, x, safe) for x, safe in zip(primals, (-2, 3), strict=True)]
         by_slope = slope(*away) * jnp.where(far, tangents[0], 0)

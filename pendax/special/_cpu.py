@@ -41,6 +41,17 @@ def stage(function: Callable, *arguments: Any) -> Any:
     return lax.platform_dependent(*arguments, cpu=cut, default=function)
 
 
+def where_needed(needed: Any, function: Callable, *arguments: Any) -> Any:
+    """`function(*arguments)`, one array, if any of it is needed, else zeros; for what is
+    within [`in_blocks`][], where no mapped predicate makes both branches run."""
+
+    def zeros(*arguments):
+        result = jax.eval_shape(function, *arguments)
+        return jnp.zeros(result.shape, result.dtype)
+
+    return lax.cond(jnp.any(needed), function, zeros, *arguments)
+
+
 def in_blocks(function: Callable) -> Callable:
     """`function`, elementwise from arrays of one rank to a tuple of arrays, in blocks.
 

@@ -64,12 +64,14 @@ def ordered(x: FloatArray, y: FloatArray, z: FloatArray, *others: tuple) -> list
     return rows
 
 
-def _kernel(steps: Callable, long: Callable) -> Callable:
-    """steps(count, *arguments), in blocks; where a block needs more than a few, long(…)."""
+def kernel(steps: Callable, long: Callable, three: Callable = lambda *x: x[:3]) -> Callable:
+    """steps(count, *arguments), in blocks; where a block needs more than a few, long(…).
+
+    `three` of the arguments are what the number of steps depends on."""
 
     def value(*arguments):
         few, all_, share = _steps(arguments[0].dtype)
-        ((_, middle, highest),) = ordered(*arguments[:3])
+        ((_, middle, highest),) = ordered(*three(*arguments))
         far = jnp.any(middle < share * highest)  # false for NaN
         branches = (lambda *x: (long(all_, *x),)), (lambda *x: (steps(few, *x),))
         return lax.cond(far, *branches, *arguments)
@@ -78,9 +80,11 @@ def _kernel(steps: Callable, long: Callable) -> Callable:
     return lambda *arguments: fast(*jnp.broadcast_arrays(*arguments))[0]
 
 
-def _differentiated(steps: Callable, loop: Callable, long: Callable) -> Callable:
-    """The kernel of `steps`; its derivatives are kernels of theirs, and theirs are those of
-    loop(count, *arguments), the same as `steps` but compiled faster."""
+def _differentiated(
+    steps: Callable, loop: Callable, long: Callable, pole: Callable = lambda *x: False
+) -> Callable:
+    """The kernel of `steps`, inf where `pole`; its derivatives are kernels of theirs, and
+    theirs are those of loop(count, *arguments), the same as `steps` but compiled faster."""
 
     def along(function, i, relative=False):
         """Its derivative in the i-th argument, or that times the argument, which does not
@@ -96,12 +100,12 @@ def _differentiated(steps: Callable, loop: Callable, long: Callable) -> Callable
 
     @cache
     def slope(i):
-        kernel = _kernel(along(steps, i, True), along(loop, i, True))
+        relative = kernel(along(steps, i, True), along(loop, i, True))
 
         @jax.custom_jvp
         def call(*arguments):
             x = arguments[i]
-            rest = kernel(*arguments) * reciprocal(jnp.where(x == 0, 1, x))
+            rest = relative(*arguments) * reciprocal(jnp.where(x == 0, 1, x))
             return finite(jnp.where(x == 0, -jnp.inf, rest))
 
         @call.defjvp
@@ -111,7 +115,10 @@ def _differentiated(steps: Callable, loop: Callable, long: Callable) -> Callable
 
         return call
 
-    call = jax.custom_jvp(_kernel(steps, long))
+    def value(count, *arguments, steps=steps):
+        return at_the_ends(steps(count, *arguments), pole(*arguments), *arguments)
+
+    call = jax.custom_jvp(kernel(value, partial(value, steps=long)))
 
     @partial(call.defjvp, symbolic_zeros=True)
     def _(primals, tangents):
@@ -121,6 +128,15 @@ def _differentiated(steps: Callable, loop: Callable, long: Callable) -> Callable
     return call
 
 
+def at_the_ends(inside, pole, *arguments):
+    """`inside`; inf at a `pole`, 0 where an argument is inf, NaN where one is negative."""
+    least = highest = arguments[0]
+    for x in arguments[1:]:
+        least, highest = jnp.minimum(least, x), jnp.maximum(highest, x)
+    value = jnp.where(jnp.isinf(highest), 0, inside)
+    return jnp.where(least >= 0, jnp.where(pole, jnp.inf, value), jnp.nan)
+
+
 def _means(x, y, z):
     """The roots, and the arguments a step on."""
     a, b, c = root(x), root(y), root(z)
@@ -128,10 +144,15 @@ def _means(x, y, z):
     return (a, b, c), step, tuple(0.25 * (t + step) for t in (x, y, z))
 
 
-def _rf_steps(count, x, y, z):
+def rf_steps(count, x, y, z):
     for _ in range(count):
         x, y, z = _means(x, y, z)[2]
     return _rf_series(x, y, z)
+
+
+def _rf_value(count, *arguments):
+    ((_, middle, _),) = ordered(*arguments)
+    return at_the_ends(rf_steps(count, *arguments), middle == 0, *arguments)
 
 
 def _rf_series(x, y, z):
@@ -234,14 +255,15 @@ def _rj_loop(count, *arguments):
     return _rj_ended(*lax.scan(_rj_step, at, length=count)[0])
 
 
-# RD(x, y, z); x, y >= 0, not both 0, z > 0.
-rd = _differentiated(_rd_steps, _rd_loop, _rd_steps)
+# RF, RD and RJ of floats ≥ 0; p > 0 up to some times the largest of the others.
+rd = _differentiated(
+    _rd_steps, _rd_loop, _rd_steps, lambda x, y, z: (z == 0) | ((x == 0) & (y == 0))
+)
 
-# RJ(x, y, z, p); x, y, z as those of RF, and 0 < p up to some times the largest.
 rj = _differentiated(_rj_steps, _rj_loop, _rj_loop)
 
 
-def _sum_of_steps(count, x, y, z, of_rf, of_rd):
+def sum_of_steps(count, x, y, z, of_rf, of_rd):
     at = _rd_begun(x, y, z)
     for _ in range(count):
         at, _ = _rd_step(at)
@@ -249,7 +271,7 @@ def _sum_of_steps(count, x, y, z, of_rf, of_rd):
 
 
 # a RF(x, y, z) + b RD(x, y, z) of (x, y, z, a, b), not to be differentiated.
-rf_and_rd = _kernel(_sum_of_steps, _sum_of_steps)
+rf_and_rd = kernel(sum_of_steps, sum_of_steps)
 
 
 def _rd_of(which: int) -> Callable:
@@ -268,8 +290,7 @@ def _rd_of(which: int) -> Callable:
 
 _rd_of_lowest, _rd_of_middle = map(_rd_of, (0, 1))
 
-# RF(x, y, z); x, y, z >= 0, not two of them 0.
-rf = jax.custom_jvp(_kernel(_rf_steps, _rf_steps))
+rf = jax.custom_jvp(kernel(_rf_value, _rf_value))
 
 
 @partial(rf.defjvp, symbolic_zeros=True)

@@ -3,10 +3,11 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
-from jax import lax
 from jaxtyping import Array, ArrayLike, Float
 
 from ._complete import _e, _k
+from ._cpu import where_needed
+from ._domain import fenced
 from ._duplication import rd, rf, rf_and_rd
 from ._either import with_parameter
 from ._integral import integral
@@ -85,12 +86,7 @@ def per_turn(turns: FloatArray, complete, *parameters: FloatArray) -> FloatArray
         safe = [jnp.where(none, 0, x) for x in parameters[:-1]]
         return jnp.where(none, 0, 2 * turns * complete(*safe, jnp.where(none, 1, parameters[-1])))
 
-    def nothing(turns, *parameters):
-        return jnp.zeros(
-            jnp.broadcast_shapes(*(x.shape for x in (turns, *parameters))), turns.dtype
-        )
-
-    return lax.cond(jnp.all(none), nothing, some, turns, *parameters)
+    return where_needed(~none, some, turns, *parameters)
 
 
 def _first(phi, m, m1):
@@ -142,16 +138,22 @@ _e_inside = integral(
 
 @jax.jit
 def _kinc(phi: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
-    quarter = jnp.abs(phi) >= np.asarray(np.pi / 2, phi.dtype)
-    endless = lax.stop_gradient(jnp.inf * phi)
-    value = jnp.where((m1 == 0) & quarter, endless, _f_inside(phi, m, m1))
-    value = jnp.where(jnp.isinf(phi) & (m1 >= 0) & ~jnp.isinf(m1), phi, value)
-    return jnp.where(jnp.isinf(m1) & (m1 > 0) & ~jnp.isinf(phi), 0 * phi, value)
+    far = jnp.isinf(m1) & (m1 > 0)
+    endless = (m1 == 0) & at_quarter(phi) | jnp.isinf(phi) & (m1 >= 0) & ~far
+    outside = jnp.where(endless, jnp.inf * phi, jnp.where(far & ~jnp.isinf(phi), 0, jnp.nan))
+    value = _f_inside(phi, m, m1)
+    return fenced(value, ~(endless | far | jnp.isnan(value)), outside, phi, m)
 
 
 @jax.jit
 def _einc(phi: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
-    endless = jnp.isinf(phi) & (m1 >= 0)
-    value = jnp.where(endless, phi, _e_inside(phi, m, m1))
     far = jnp.isinf(m1) & (m1 > 0)
-    return jnp.where(far, jnp.where(phi == 0, 0, lax.stop_gradient(jnp.inf * phi)), value)
+    endless = (jnp.isinf(phi) | far) & (m1 >= 0)
+    outside = jnp.where(endless, jnp.where(phi == 0, 0, jnp.inf * phi), jnp.nan)
+    value = _e_inside(phi, m, m1)
+    return fenced(value, ~(endless | jnp.isnan(value)), outside, phi, m)
+
+
+def at_quarter(phi: FloatArray) -> jax.Array:
+    """|φ| ≥ π/2, for which its float stands."""
+    return jnp.abs(phi) >= np.asarray(np.pi / 2, phi.dtype)

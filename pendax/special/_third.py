@@ -1,18 +1,20 @@
 """The integrals of the third kind: Π(n; φ | m), and Carlson's RJ for every p."""
 
+from functools import partial
+
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jax import lax
 from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common, widened
 from ._carlson import rc
+from ._cpu import in_blocks, where_needed
 from ._domain import fenced
 from ._duplication import ordered, rf, rj, root
 from ._either import with_parameter
 from ._elementary import reciprocal
-from ._incomplete import one_less, per_turn
+from ._incomplete import at_quarter, one_less, per_turn
 from ._integral import integral
 from ._quarters import reduced
 
@@ -105,7 +107,8 @@ def third(s: FloatArray, c: FloatArray, n: FloatArray, m: FloatArray, m1: FloatA
     on_it = p == 0
     q, y = jnp.where(on_it, 1, q), jnp.where(on_it, 1, y)
     value = of_rf * rf(cc, square, one) + 1 / 3 * of_rj * ss * rj(cc, square, one, q)
-    return s * jnp.where(on_it, jnp.inf, value + of_rc * rc(x, y))
+    rest = where_needed(by_one | by_cosine, lambda *x: of_rc * rc(*x), x, y)
+    return s * jnp.where(on_it, jnp.inf, value + rest)
 
 
 def _whole(n, m, m1):
@@ -129,11 +132,16 @@ _pi_whole = integral(_whole)
 
 @jax.jit
 def _piinc(phi: FloatArray, n: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
-    endless = (m1 == 0) & (jnp.abs(phi) >= np.asarray(np.pi / 2, phi.dtype))
-    endless = endless | (jnp.isinf(phi) & (m1 > 0))
-    at_end = lax.stop_gradient(jnp.where(n < 1, jnp.inf, -jnp.inf) * phi)
-    value = jnp.where(endless, at_end, _pi_of_phi(phi, n, m, m1))
-    return jnp.where(jnp.isinf(m1) & (m1 > 0), 0 * phi, value)
+    turns, s, c = reduced(phi)
+    on_pole = (one_less(n, 1 - n, s, c) == 0) | ((n == 1) & (turns != 0))
+    upwards = on_pole | (jnp.isinf(phi) & (n <= 1) & (m1 >= 0))
+    at_end = (m1 == 0) & at_quarter(phi)
+    sign = jnp.where(at_end & (n > 1), -jnp.inf, jnp.inf)
+    none = (jnp.isinf(n) & ~jnp.isinf(phi)) | (jnp.isinf(m1) & (m1 > 0))
+    outside = jnp.where(upwards | at_end, sign * phi, jnp.where(none, 0, jnp.nan))
+    value = _pi_of_phi(phi, n, m, m1)
+    ordinary = ~(upwards | at_end | none | jnp.isnan(value))
+    return fenced(value, ordinary, outside, phi, n, m)
 
 
 @jax.jit
@@ -147,16 +155,37 @@ def _pi(n: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
     return fenced(_pi_whole(*safe), valid, outside, n, m)
 
 
-@jax.jit
-def _rj(x: FloatArray, y: FloatArray, z: FloatArray, p: FloatArray) -> FloatArray:
+def _rj_fenced(inside, x, y, z, p):
     ((_, middle, _),) = ordered(x, y, z)
     none_below = (x >= 0) & (y >= 0) & (z >= 0) & (p != 0) & ~jnp.isnan(p)
     endless = jnp.isinf(x) | jnp.isinf(y) | jnp.isinf(z) | jnp.isinf(p)
     valid = none_below & ~endless & (middle > 0)
-    outside = jnp.where(middle > 0, 0, jnp.where(endless, jnp.nan, lax.stop_gradient(jnp.inf * p)))
-    outside = jnp.where(none_below, outside, jnp.nan)
+    outside = jnp.where(endless, jnp.nan, lax.stop_gradient(jnp.inf * p))
+    outside = jnp.where(none_below, jnp.where(middle > 0, 0, outside), jnp.nan)
     safe = (jnp.where(valid, t, 1) for t in (x, y, z, p))
-    return fenced(_rj_inside(*safe), valid, outside, x, y, z, p)
+    return fenced(inside(*safe), valid, outside, x, y, z, p)
+
+
+@jax.custom_jvp
+def _rj_everywhere(x: FloatArray, y: FloatArray, z: FloatArray, p: FloatArray) -> FloatArray:
+    return _rj_value(x, y, z, p)[0]
+
+
+@_rj_everywhere.defjvp
+def _rj_jvp(primals, tangents):
+    return _rj_everywhere(*primals), jax.jvp(partial(_rj_fenced, _rj_inside), primals, tangents)[1]
+
+
+_rj = jax.jit(_rj_everywhere)
+
+
+@in_blocks
+def _rj_value(x, y, z, p):
+    def inside(x, y, z, p):
+        usual = (p > 0) & (p <= 8 * jnp.maximum(x, jnp.maximum(y, z)))
+        return lax.cond(jnp.all(usual), rj, _rj_inside, x, y, z, p)
+
+    return (_rj_fenced(inside, x, y, z, p),)
 
 
 def _rj_inside(x, y, z, p):
@@ -167,29 +196,28 @@ def _rj_inside(x, y, z, p):
     size, above = jnp.where(past, -p, 1), jnp.where(large, p, 9 * z)
     over_y, over_z, over_p = (reciprocal(t) for t in (y + size, z + size, above - z))
     share, rest = (y + size) * over_z, (z - y) * over_z
-    q = y + (z - y) * ((y - x) * over_y)
-    q_past = x + (z - x) * share
-    q_large = z + (z - x) * ((z - y) * over_p)
-
+    of_q, of_large = (y - x) * over_y, (z - y) * over_p
     unit = jnp.where(past | large, lax.stop_gradient(_unit(y, z)), 1)
-    x, y, z, p, q, q_past, q_large = (t * unit for t in (x, y, z, p, q, q_past, q_large))
+    x, y, z, p = (t * unit for t in (x, y, z, p))
+    q, q_past, q_large = y + (z - y) * of_q, x + (z - x) * share, z + (z - x) * of_large
     per_y, per_z = reciprocal(y), reciprocal(z)
     first = rf(x, y, z)
     last = rj(x, y, z, jnp.where(large, q_large, jnp.where(past, q_past, p)))
 
-    limit = 0.1 * float(jnp.finfo(p.dtype).max)
+    # Where a first argument of RC leaves the range of the floats, it is 0, derivatives too.
+    least, limit = (f(float(jnp.finfo(p.dtype).max)) for f in (lambda x: 1e8 / x, lambda x: x / 8))
+    of_rc = x * jnp.where(past, per_y, y * per_z)
+    of_rc = jnp.where(of_rc > least, of_rc, 0)
     far = jnp.minimum(above * unit, limit) * (q_large * per_z)
     between = (q * per_z) * (q_past * per_y)
-    rc_ = rc(
-        jnp.where(large, x * (y * per_z), 1), jnp.where(large, far, jnp.where(past, between, 1))
-    )
-    of_large = 3 * (first - rc_) - (q_large - z) * last
+    rc_ = rc(jnp.where(large, of_rc, 1), jnp.where(large, far, jnp.where(past, between, 1)))
+    large_ = 3 * (first - rc_) - (q_large - z) * last
     positive = root(x) * root(per_y) * root(per_z) * rc_ + 1 / 3 * (z - x) * share * last
     positive = share * first + rest * positive
     below = jnp.minimum(jnp.minimum(size * unit, limit) * per_z * (q * per_y), limit)
-    principal = rc(jnp.where(past, x * per_y, 1), jnp.where(past, -below, 1)) * root(per_z)
+    principal = rc(jnp.where(past, of_rc, 1), jnp.where(past, -below, 1)) * root(per_z)
     of_past = 3 * (principal - positive)
-    degree = jnp.where(large, of_large * over_p, jnp.where(past, of_past * over_y, last * unit))
+    degree = jnp.where(large, large_ * over_p, jnp.where(past, of_past * over_y, last * unit))
     return degree * jnp.sqrt(unit)
 
 
