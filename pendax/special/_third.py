@@ -11,7 +11,7 @@ from .._arrays import common, widened
 from ._carlson import rc
 from ._cpu import in_blocks, where_needed
 from ._domain import fenced
-from ._duplication import ordered, rf, rj, root
+from ._duplication import ordered, rf, rj
 from ._either import with_parameter
 from ._elementary import reciprocal
 from ._incomplete import at_quarter, one_less, per_turn
@@ -75,7 +75,7 @@ def elliprj(x: ArrayLike, y: ArrayLike, z: ArrayLike, p: ArrayLike) -> FloatArra
 
     Within 20 eps of |RJ| + Σ |x ∂RJ/∂x| for arguments from 1e-300 to 1e300 (float32: 1e±36)
     where the result is a float; derivatives in an argument that is 0 as [`elliprf`][].
-    DLMF 19.16.2, 19.20.14; by Carlson's duplication, p out of range by 19.21.12.
+    DLMF 19.16.2; by Carlson's duplication, p out of range by 19.21.12.
     """
     return widened(_rj)(*common(x=x, y=y, z=z, p=p))
 
@@ -189,36 +189,28 @@ def _rj_value(x, y, z, p):
 
 
 def _rj_inside(x, y, z, p):
-    """With x ≤ y ≤ z, DLMF 19.21.12 about z for a large p, about y for p < 0, where it leaves
-    3 RF − (q − y) RJ(q): that again about x, which makes it a sum of positive terms."""
+    """With x ≤ y ≤ z, DLMF 19.21.12 about z for p < 0 and for a large p: about the middle one
+    (19.20.14), p < 0 leaves a difference of two large numbers to derivatives."""
     ((x, y, z),) = ordered(x, y, z)
     past, large = p < 0, p > 8 * z
-    size, above = jnp.where(past, -p, 1), jnp.where(large, p, 9 * z)
-    over_y, over_z, over_p = (reciprocal(t) for t in (y + size, z + size, above - z))
-    share, rest = (y + size) * over_z, (z - y) * over_z
-    of_q, of_large = (y - x) * over_y, (z - y) * over_p
+    over = reciprocal(jnp.where(past, z - p, jnp.where(large, p - z, z)))
+    rest, share = (z - y) * over, z * over
     unit = jnp.where(past | large, lax.stop_gradient(_unit(y, z)), 1)
     x, y, z, p = (t * unit for t in (x, y, z, p))
-    q, q_past, q_large = y + (z - y) * of_q, x + (z - x) * share, z + (z - x) * of_large
-    per_y, per_z = reciprocal(y), reciprocal(z)
-    first = rf(x, y, z)
-    last = rj(x, y, z, jnp.where(large, q_large, jnp.where(past, q_past, p)))
+    per_z, away = reciprocal(z), (z - x) * rest
+    # z − away, a sum of positive terms.
+    q_past = (y + x * (z - y) * per_z - p) * share
+    q = jnp.where(past, q_past, jnp.where(large, z + away, p))
+    last = rj(x, y, z, q)
 
     # Where a first argument of RC leaves the range of the floats, it is 0, derivatives too.
-    least, limit = (f(float(jnp.finfo(p.dtype).max)) for f in (lambda x: 1e8 / x, lambda x: x / 8))
-    of_rc = x * jnp.where(past, per_y, y * per_z)
-    of_rc = jnp.where(of_rc > least, of_rc, 0)
-    far = jnp.minimum(above * unit, limit) * (q_large * per_z)
-    between = (q * per_z) * (q_past * per_y)
-    rc_ = rc(jnp.where(large, of_rc, 1), jnp.where(large, far, jnp.where(past, between, 1)))
-    large_ = 3 * (first - rc_) - (q_large - z) * last
-    positive = root(x) * root(per_y) * root(per_z) * rc_ + 1 / 3 * (z - x) * share * last
-    positive = share * first + rest * positive
-    below = jnp.minimum(jnp.minimum(size * unit, limit) * per_z * (q * per_y), limit)
-    principal = rc(jnp.where(past, of_rc, 1), jnp.where(past, -below, 1)) * root(per_z)
-    of_past = 3 * (principal - positive)
-    degree = jnp.where(large, large_ * over_p, jnp.where(past, of_past * over_y, last * unit))
-    return degree * jnp.sqrt(unit)
+    largest = float(jnp.finfo(p.dtype).max)
+    least = x * (y * per_z)
+    least = jnp.where(least > 1e8 / largest, least, 0)
+    far = jnp.clip(p, -largest / 8, largest / 8) * (q * per_z)
+    of_rc = rc(*(jnp.where(past | large, t, 1) for t in (least, far)))
+    moved = jnp.where(past, -3, 3) * (rf(x, y, z) - of_rc) - away * last
+    return jnp.where(past | large, moved * over, last * unit) * jnp.sqrt(unit)
 
 
 def _unit(y, z):
