@@ -3,11 +3,11 @@
 import jax
 import jax.numpy as jnp
 import numpy as np
+from jax import lax
 from jaxtyping import Array, ArrayLike, Float
 
 from ._complete import _e, _k
 from ._cpu import where_needed
-from ._domain import fenced
 from ._duplication import rd, rf, rf_and_rd
 from ._either import with_parameter
 from ._integral import integral
@@ -91,7 +91,12 @@ def per_turn(turns: FloatArray, complete, *parameters: FloatArray) -> FloatArray
 
 def _first(phi, m, m1):
     turns, s, c = reduced(phi)
-    return per_turn(turns, _k, m, m1) + s * rf(c * c, one_less(m, m1, s, c), jnp.ones_like(phi))
+    value = s * rf(c * c, one_less(m, m1, s, c), jnp.ones_like(phi))
+    value = per_turn(turns, _k, m, m1) + value
+    far = jnp.isinf(m1) & (m1 > 0)
+    endless = (m1 == 0) & at_quarter(phi) | jnp.isinf(phi) & (m1 >= 0) & ~far
+    value = jnp.where(endless, lax.stop_gradient(jnp.inf * phi), value)
+    return jnp.where(far & ~jnp.isinf(phi), 0, value)
 
 
 def _first_integrand(phi, m, m1):
@@ -107,7 +112,9 @@ def _second(phi, m, m1):
     of_rf, of_rd = jnp.where(by_delta, m1, 1), jnp.where(by_delta, m1, -1) * (m / 3)
     value = rf_and_rd(c * c, *pair, of_rf, (of_rd * s) * s)
     value = value + jnp.where(by_delta, m * c / jnp.sqrt(square), 0)
-    return per_turn(turns, _e, m, m1) + s * value
+    value = per_turn(turns, _e, m, m1) + s * value
+    endless = (jnp.isinf(phi) | jnp.isinf(m1)) & (m1 >= 0)
+    return jnp.where(endless, jnp.where(phi == 0, 0, jnp.inf * phi), value)
 
 
 def _second_integrand(phi, m, m1):
@@ -130,30 +137,12 @@ def _e_by_m(m, m1):
     return jax.jvp(_e, (m, m1), (jnp.ones_like(m), -jnp.ones_like(m)))[1]
 
 
-_f_inside = integral(_first, _first_integrand)
-_e_inside = integral(
-    _second, _second_integrand, by_m=integral(_second_by_m, _second_by_m_integrand)
-)
-
-
-@jax.jit
-def _kinc(phi: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
-    far = jnp.isinf(m1) & (m1 > 0)
-    endless = (m1 == 0) & at_quarter(phi) | jnp.isinf(phi) & (m1 >= 0) & ~far
-    outside = jnp.where(endless, jnp.inf * phi, jnp.where(far & ~jnp.isinf(phi), 0, jnp.nan))
-    value = _f_inside(phi, m, m1)
-    return fenced(value, ~(endless | far | jnp.isnan(value)), outside, phi, m)
-
-
-@jax.jit
-def _einc(phi: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
-    far = jnp.isinf(m1) & (m1 > 0)
-    endless = (jnp.isinf(phi) | far) & (m1 >= 0)
-    outside = jnp.where(endless, jnp.where(phi == 0, 0, jnp.inf * phi), jnp.nan)
-    value = _e_inside(phi, m, m1)
-    return fenced(value, ~(endless | jnp.isnan(value)), outside, phi, m)
-
-
 def at_quarter(phi: FloatArray) -> jax.Array:
     """|φ| ≥ π/2, for which its float stands."""
     return jnp.abs(phi) >= np.asarray(np.pi / 2, phi.dtype)
+
+
+_kinc = jax.jit(integral(_first, _first_integrand))
+_einc = jax.jit(
+    integral(_second, _second_integrand, by_m=integral(_second_by_m, _second_by_m_integrand))
+)

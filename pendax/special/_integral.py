@@ -20,7 +20,8 @@ def integral(
     The derivative in φ is the integrand.  That in a parameter is the integral of the
     integrand's derivative, and again of this kind: its value is the derivative of `value`,
     or, in m, the function `by_m`.  So a derivative in φ never goes through the cosine of φ,
-    whose square root is not smooth at quarter turns.  To derivatives m1 is 1 − m: the
+    whose square root is not smooth at quarter turns.  Where the value is infinite, there is
+    none: NaN.  To derivatives m1 is 1 − m: the
     tangent of m counts, that of m1 does not.
     """
     fast = jax.jit(in_blocks(lambda *arguments: (value(*arguments),)))
@@ -47,7 +48,7 @@ def integral(
             if not isinstance(x, SymbolicZero):
                 by = slope(i, len(primals))(*primals)
                 tangent = tangent + (by if i == 0 and integrand else finite(by)) * x
-        return y, tangent
+        return y, tangent * jnp.where(jnp.isfinite(y), 1, jnp.nan)
 
     return call
 

@@ -118,7 +118,14 @@ def _whole(n, m, m1):
 
 def _incomplete(phi, n, m, m1):
     turns, s, c = reduced(phi)
-    return per_turn(turns, _whole, n, m, m1) + third(s, c, n, m, m1)
+    value = per_turn(turns, _whole, n, m, m1) + third(s, c, n, m, m1)
+    on_pole = (one_less(n, 1 - n, s, c) == 0) | ((n == 1) & (turns != 0))
+    upwards = on_pole | (jnp.isinf(phi) & (n <= 1) & (m1 >= 0))
+    at_end = (m1 == 0) & at_quarter(phi)
+    sign = jnp.where(at_end & (n > 1), -jnp.inf, jnp.inf)
+    value = jnp.where(upwards | at_end, lax.stop_gradient(sign * phi), value)
+    none = (jnp.isinf(n) & ~jnp.isinf(phi)) | (jnp.isinf(m1) & (m1 > 0))
+    return jnp.where(none, 0, value)
 
 
 def _integrand(phi, n, m, m1):
@@ -126,22 +133,8 @@ def _integrand(phi, n, m, m1):
     return 1 / (one_less(n, 1 - n, s, c) * jnp.sqrt(one_less(m, m1, s, c)))
 
 
-_pi_of_phi = integral(_incomplete, _integrand)
+_piinc = jax.jit(integral(_incomplete, _integrand))
 _pi_whole = integral(_whole)
-
-
-@jax.jit
-def _piinc(phi: FloatArray, n: FloatArray, m: FloatArray, m1: FloatArray) -> FloatArray:
-    turns, s, c = reduced(phi)
-    on_pole = (one_less(n, 1 - n, s, c) == 0) | ((n == 1) & (turns != 0))
-    upwards = on_pole | (jnp.isinf(phi) & (n <= 1) & (m1 >= 0))
-    at_end = (m1 == 0) & at_quarter(phi)
-    sign = jnp.where(at_end & (n > 1), -jnp.inf, jnp.inf)
-    none = (jnp.isinf(n) & ~jnp.isinf(phi)) | (jnp.isinf(m1) & (m1 > 0))
-    outside = jnp.where(upwards | at_end, sign * phi, jnp.where(none, 0, jnp.nan))
-    value = _pi_of_phi(phi, n, m, m1)
-    ordinary = ~(upwards | at_end | none | jnp.isnan(value))
-    return fenced(value, ordinary, outside, phi, n, m)
 
 
 @jax.jit
