@@ -20,8 +20,9 @@ def elliprf(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> FloatArray:
     **Arguments:** `x`, `y`, `z` ≥ 0, one of them 0 at most.  Shapes broadcast.
 
     **Returns:** RF: inf where two are 0; 0 where one is inf; NaN (value and gradient) where
-    one is negative.  The derivative in an argument that is 0 is −inf; as about the largest
-    number of the floats it leaves those in the others as they are.
+    one is negative.  In an argument that is 0 the derivative is infinite.  What is given
+    instead is a very large number (1e76 or more in size, of its sign), because inf times 0
+    would spoil the derivatives in the other arguments; those are right.
 
     Within 3 eps for arguments from 1e-300 to 1e300 (float32: 1e±36), derivatives 10.
     DLMF 19.16.1; by Carlson's duplication (19.36.1).
@@ -35,9 +36,10 @@ def elliprc(x: ArrayLike, y: ArrayLike) -> FloatArray:
     **Arguments:** `x` ≥ 0, `y` ≠ 0.  Shapes broadcast.
 
     **Returns:** RC, the Cauchy principal value where y < 0; 0 where one is inf; NaN (value
-    and gradient) for x < 0 and y = 0.
+    and gradient) for x < 0 or y = 0.
 
-    Within 6 eps of |RC| + |x ∂RC/∂x| + |y ∂RC/∂y|, domain as [`elliprf`][].  DLMF 19.2.17,
+    Within 6 eps of |RC| + |x ∂RC/∂x| + |y ∂RC/∂y|, domain and derivative at x = 0 as
+    [`elliprf`][].  DLMF 19.2.17,
     19.2.20; an arctangent for x < y, else a logarithm.
     """
     return widened(_rc)(*common(x=x, y=y))
@@ -65,7 +67,8 @@ def elliprg(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> FloatArray:
     **Returns:** RG: √z / 2 where the others are 0; inf where one is inf; NaN (value and
     gradient) where one is negative.
 
-    Within 4 eps, domain and derivatives in an argument that is 0 as [`elliprf`][].
+    Within 5 eps, domain as [`elliprf`][].  The derivative in one argument that is 0 is
+    RF / 4; where two are 0, theirs are infinite, given as very large numbers.
     DLMF 19.16.3, 19.23.6; by 19.21.10 with the middle argument last, a sum of positive terms.
     """
     return widened(_rg)(*common(x=x, y=y, z=z))

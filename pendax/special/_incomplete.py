@@ -32,7 +32,8 @@ def ellipkinc(
     Shapes broadcast.
 
     **Returns:** F, odd and quasi-periodic in φ: F(φ + π) = F(φ) + 2 K.  For m = 1 ±inf from
-    |φ| = π/2 on, for which its float stands; NaN (value and gradient) outside the domain.
+    |φ| = π/2 on, for which its float stands, and the gradient is NaN where the value is
+    infinite; NaN (value and gradient) outside the domain.
 
     **Raises:** `ValueError` unless exactly one of `m` and `m1` is given.
 

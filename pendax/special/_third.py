@@ -33,14 +33,15 @@ def ellippiinc(
       Mathematica; the Spanish source's H(k, n, φ) of table 5.2.1 has 1 + n sin²θ and is
       Π(−n; φ | k²).**
     - `phi`: the amplitude φ, rad, any real numbers.
-    - `m`: the parameter k² (not the modulus k), m ≤ 1; or `m1` = 1 − m instead, for m so
-      near to 1 that 1 − m has lost its digits.
+    - `m`: the parameter k² (not the modulus k), m ≤ 1; beyond, as long as m sin²φ ≤ 1 and
+      |φ| ≤ π/2.  Or `m1` = 1 − m instead, for m so near to 1 that 1 − m has lost its digits.
 
     Shapes broadcast.
 
     **Returns:** Π, odd and quasi-periodic in φ; past a pole, n sin²φ > 1, the Cauchy
     principal value; inf on the pole.  For m = 1 ±inf from |φ| = π/2 on, for which its
-    float stands; NaN (value and gradient) outside the domain.
+    float stands.  The gradient is NaN where the value is infinite; NaN (value and gradient)
+    outside the domain.
 
     **Raises:** `ValueError` unless exactly one of `m` and `m1` is given.
 
@@ -56,7 +57,8 @@ def ellippi(n: ArrayLike, m: ArrayLike | None = None, *, m1: ArrayLike | None = 
     **Arguments:** as [`ellippiinc`][], sign of n included; shapes broadcast.
 
     **Returns:** Π: inf at n = 1; for n > 1 the Cauchy principal value; at m = 1 inf for
-    n < 1 and −inf above; NaN (value and gradient) for m > 1.
+    n ≤ 1 and −inf above.  The gradient is NaN where the value is infinite; NaN (value and
+    gradient) for m > 1.
 
     **Raises:** `ValueError` unless exactly one of `m` and `m1` is given.
 
