@@ -211,23 +211,19 @@ def _stock(solver, rtol, v0):
 
 
 def _draw(points: list[Point]) -> None:
-    import matplotlib
+    from pendax.plot import new_figure, style, work_precision
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    figure, axes = plt.subplots(figsize=(7, 4.5), layout="constrained")
-    for method in dict.fromkeys(p.method for p in points):
-        mine = sorted((p.error, p.seconds * 1e6) for p in points if p.method == method)
-        axes.loglog(*zip(*mine, strict=True), "o-", label=method)
-    axes.set(
-        xlabel="median error of θ and v at t = 100, rad and rad/s",
-        ylabel="run time of a lane, µs",
-        title="1,024 damped, driven lanes (ε = 1, β = 0.16, τ = 0.15)",
-    )
-    axes.invert_xaxis()
-    axes.grid(alpha=0.3)
-    axes.legend()
-    FOLDER.mkdir(exist_ok=True)
-    figure.savefig(FOLDER / "damped.png", dpi=150)
-    plt.close(figure)
+    methods = {}
+    for name in dict.fromkeys(p.method for p in points):
+        mine = sorted((p.error, p.seconds * 1e6) for p in points if p.method == name)
+        methods[name] = tuple(zip(*mine, strict=True))
+    with style():
+        figure = new_figure(7.0, 4.5)
+        ax = work_precision(
+            figure.subplots(), methods,
+            error="median error of θ / rad and v / rad s⁻¹ at 100 s",
+            time="run time of a lane / µs",
+        )  # fmt: skip
+        ax.set_title("1,024 damped, driven lanes (ε = 1, β = 0.16, τ = 0.15)")
+        FOLDER.mkdir(exist_ok=True)
+        figure.savefig(FOLDER / "damped.png")

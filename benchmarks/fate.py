@@ -8,7 +8,14 @@ import fate_references as references
 import jax
 import numpy as np
 
-from pendax import Pendulum, mean_velocity, retrapping_torque, settle, well_boundaries
+from pendax import (
+    Pendulum,
+    Settled,
+    mean_velocity,
+    retrapping_torque,
+    settle,
+    well_boundaries,
+)
 
 from .timing import side_by_side
 
@@ -46,7 +53,7 @@ def maps(seed: int, pixels: int, rounds: int) -> int:
         seconds = side_by_side({"": call}, rounds)[""]
         ends = call()
         fate = np.stack([ends.running, ends.well], -1)
-        found[name] = fate
+        found[name] = ends
         edge = (fate[1:-1, 1:-1] != fate[2:, 1:-1]) | (fate[1:-1, 1:-1] != fate[1:-1, 2:])
         beside = np.argwhere(edge.any(-1)) + 1
         chosen = np.concatenate(
@@ -104,31 +111,18 @@ def times(rounds: int) -> int:
     return 0
 
 
-def _draw(found: dict[str, np.ndarray]) -> None:
-    import matplotlib
+def _draw(found: dict[str, Settled]) -> None:
+    from pendax.plot import fate_map, new_figure, style
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-    from matplotlib.colors import BoundaryNorm
-
-    figure, panels = plt.subplots(1, 2, figsize=(10, 4.5), layout="constrained")
-    wells = np.arange(-6, 7)
-    colours, norm = plt.get_cmap("RdBu_r", len(wells)), BoundaryNorm([*wells, 7], len(wells))
-    for panel, (name, (beta, tau, v0)) in zip(panels, axes().items(), strict=True):
-        fate = found[name]
-        upright = beta if np.ndim(beta) else tau
-        well = np.clip(fate[..., 1].astype(float), -6, 6)
-        shown = np.ma.masked_array(well, fate[..., 0] != 0)
-        panel.set_facecolor("0.25")
-        image = panel.pcolormesh(v0, upright[:, 0], shown, cmap=colours, norm=norm)
-        panel.set(xlabel="v0, rad/s", ylabel="β, 1/s" if np.ndim(beta) else "τ, 1/s²")
-        panel.set_title(name + ", ε = 1 1/s²")
-        if np.ndim(beta):
-            panel.set_yscale("log")
-    bar = figure.colorbar(
-        image, ax=panels, label="well n (6 and beyond alike); dark: runs for ever"
-    )
-    bar.set_ticks(wells + 0.5, labels=[str(n) for n in wells])
-    FOLDER.mkdir(exist_ok=True)
-    figure.savefig(FOLDER / "fate.png", dpi=150)
-    plt.close(figure)
+    with style():
+        figure = new_figure(11.0, 4.5)
+        panels = zip(figure.subplots(1, 2), axes().items(), strict=True)
+        for ax, (name, (beta, tau, v0)) in panels:
+            over_beta = bool(np.ndim(beta))
+            fate_map(ax, np.ravel(v0), np.ravel(beta if over_beta else tau), found[name])
+            ax.set(xlabel="v0 / rad s⁻¹", ylabel="β / s⁻¹" if over_beta else "τ / s⁻²")
+            ax.set_title(name + ", ε = 1 1/s²")
+            if over_beta:
+                ax.set_yscale("log")
+        FOLDER.mkdir(exist_ok=True)
+        figure.savefig(FOLDER / "fate.png")

@@ -156,25 +156,21 @@ def front(rounds: int) -> None:
 
 
 def _draw(points) -> None:
-    import matplotlib as mpl
 
     from pendax import plot
 
-    with mpl.rc_context(plot.STYLE):
+    with plot.style():
         figure = plot.new_figure(11.0, 4.5)
         left, right = figure.subplots(1, 2)
         current = np.linspace(-2, 2, 801) * IC
         plot.iv_curve(left, iv_curve(of_beta_c(10.0), current))
         drive = 1.5 * IC, 0.37 * IC * R / FLUX_QUANTUM
         steps = iv_curve(JosephsonJunction(IC, R), current, drive=drive)
-        left.plot(1e6 * current, 1e3 * steps.voltage_up, color=plot.COLOURS["next"], lw=1,
+        left.plot(1e6 * current, 1e3 * steps.voltage_up, color=plot.colour_of("next"), lw=1,
                   label="first order, under a drive")  # fmt: skip
         left.set_title(r"$\beta_c = 10$, and Shapiro's steps")
         left.legend(loc="upper left")
-        marks = zip(points.items(), "o^sv", plot.COLOURS.values(), strict=False)
-        for (name, rows), marker, colour in marks:
-            right.loglog(*zip(*rows, strict=True), marker, ls="-", color=colour, label=name)
-        right.set(xlabel="run time / s", ylabel=r"largest error / $I_c R$")
+        methods = {name: tuple(zip(*rows, strict=True))[::-1] for name, rows in points.items()}
+        plot.work_precision(right, methods, error=r"largest error / $I_c R$")
         right.set_title(f"{CURRENTS} currents of the falling branch")
-        right.legend()
         figure.savefig(FOLDER / "junction.png")

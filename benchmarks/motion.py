@@ -160,30 +160,16 @@ def methods(ts):
 
 
 def draw(points) -> None:
-    import matplotlib as mpl
+    from pendax.plot import new_figure, style, work_precision
 
-    from pendax.plot import STYLE, new_figure
-
-    with mpl.rc_context(STYLE):
+    methods = {
+        name: tuple(zip(*[(p.error, p.seconds) for p in points if p.method == name], strict=True))
+        for name in dict.fromkeys(p.method for p in points)
+    }
+    with style():
         figure = new_figure(8.0, 5.0)
-        ax = figure.subplots()
-        markers = dict(zip(dict.fromkeys(p.method for p in points), "*osDv^<>P", strict=False))
-        for method, marker in markers.items():
-            mine = [p for p in points if p.method == method]
-            style = {"ms": 14} if method == "closed form" else {}
-            ax.loglog(
-                [p.seconds for p in mine],
-                [p.error for p in mine],
-                marker=marker,
-                label=method,
-                **style,
-            )
-        ax.set(
-            xlabel="run time, s",
-            ylabel="largest error of θ, rad",
-            title="100 periods at 1,000 times, v0 = 1.5 rad/s, ε = 1 1/s²",
-        )
-        ax.legend(loc="center left", bbox_to_anchor=(0.1, 0.5), fontsize=9)
+        ax = work_precision(figure.subplots(), methods, error="largest error of θ / rad")
+        ax.set_title("100 periods at 1,000 times, v0 = 1.5 rad/s, ε = 1 1/s²")
         FOLDER.mkdir(exist_ok=True)
         figure.savefig(FOLDER / "motion.png")
     print(f"\nwritten: {FOLDER / 'motion.png'}")

@@ -29,7 +29,7 @@ def test_import_leaves_the_settings_of_jax_alone():
 
 
 def test_plots_load_when_asked_for():
-    python("import pendax; pendax.plot.frequency_curve; pendax.figures.CRITICAL['13']")
+    python("import pendax; pendax.plot.frequency_curve; pendax.figures.FIGURES['13']")
 
 
 def test_readme_example_runs():

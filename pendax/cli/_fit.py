@@ -161,11 +161,10 @@ def _guess(recording: Recording, arguments: argparse.Namespace) -> "Pendulum":
 
 
 def _draw(recording: Recording, model: np.ndarray, path: Path, name: str) -> None:
-    import matplotlib as mpl
 
     from .. import plot
 
-    with mpl.rc_context(plot.STYLE):
+    with plot.style():
         figure = plot.new_figure(8.0, 6.0)
         above, below = figure.subplots(2, 1, sharex=True, height_ratios=(2, 1))
         unit = recording.time_unit

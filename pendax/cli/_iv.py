@@ -178,12 +178,11 @@ def _write(loop: Loop, model: np.ndarray | None, path: Path) -> None:
 
 
 def _draw(loop: Loop, junction, model: np.ndarray | None, path: Path) -> None:
-    import matplotlib as mpl
 
     from .. import plot
     from ..josephson import iv_curve
 
-    with mpl.rc_context(plot.STYLE):
+    with plot.style():
         figure = plot.new_figure(7.5, 5.0 if model is None else 6.5)
         rows = 1 if model is None else 2
         axes = figure.subplots(rows, 1, sharex=True, height_ratios=(3, 1)[:rows], squeeze=False)

@@ -79,7 +79,7 @@ def run(arguments: argparse.Namespace) -> None:
 def _write(swept: "Sweep", measured: "Measured", folder: Path, form: str) -> list[str]:
     """The tables and the figures; their names."""
     # Drawing comes last: matplotlib takes longer to load than all that went before.
-    from .. import figures
+    from .. import figures, plot
     from .._sweep import write
 
     names = [f"sweep.{form}"]
@@ -87,9 +87,10 @@ def _write(swept: "Sweep", measured: "Measured", folder: Path, form: str) -> lis
     if measured:
         names.append("cycles.csv")
         write_cycles(measured[0], folder / names[-1])
-    for number, draw in figures.CRITICAL.items():
-        names.append(f"figure-{number}.png")
-        draw(swept, measured[:2] if measured else None).savefig(folder / names[-1])
+    with plot.style():
+        for entry in figures.critical_entries(lambda: swept, measured[:2] if measured else None):
+            names.append(f"figure-{entry.name}.png")
+            entry.figure().savefig(folder / names[-1])
     return names
 
 

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from .._critical import Side, critical_law
-from ._style import COLOURS
+from ._style import colour_of
 
 _NAMES: dict[Side, tuple[str, str, str]] = {
     "lower": ("below", r"t=2\sqrt{\varepsilon}-v_0", r"\frac{\pi}{2}"),
@@ -25,10 +25,10 @@ def critical_approach(
     law = (
         rf"$\omega/\sqrt{{\varepsilon}}={prefactor}\,/\,\ln(4\,(t/\sqrt{{\varepsilon}})^{{-1/2}})$"
     )
-    ax.plot(x, y, color=COLOURS[colour], lw=4, alpha=0.5, label="exact")
+    ax.plot(x, y, color=colour_of(colour), lw=4, alpha=0.5, label="exact")
     for order, style, label in ((0, "--", law), (1, ":", "with the next order in t")):
         approximate = np.asarray(critical_law(x * root, side, epsilon, order)) / root
-        ax.plot(x, approximate, style, color=COLOURS["next" if order else "law"], label=label)
+        ax.plot(x, approximate, style, color=colour_of("next" if order else "law"), label=label)
     ax.set_xscale("log")
     ax.set_ylim(0, 1.05 * y.max())
     ax.set(xlabel=rf"${distance}$, in $\sqrt{{\varepsilon}}$")
@@ -56,7 +56,7 @@ def law_deviation(
             np.abs(off[visible]),
             style,
             label=label,
-            color=COLOURS["next" if order else "law"],
+            color=colour_of("next" if order else "law"),
         )
     ax.set_xscale("log")
     ax.set_yscale("log")

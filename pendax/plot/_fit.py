@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from ._style import COLOURS
+from ._style import colour_of
 
 GAP = 2.5  # median steps
 
@@ -20,7 +20,7 @@ def recorded_motion(
     x, y = np.asarray(ts), np.degrees(model)
     gaps = np.flatnonzero(np.diff(x) > GAP * np.median(np.diff(x))) + 1
     x, y = (np.insert(np.asarray(z, float), gaps, np.nan) for z in (x, y))
-    ax.plot(x, y, color=COLOURS["law"], lw=1.1, label="model", zorder=3)
+    ax.plot(x, y, color=colour_of("law"), lw=1.1, label="model", zorder=3)
     ax.set(xlabel=f"time $t$ / {unit}", ylabel=r"angle $\theta$ / °")
     return ax
 
@@ -30,11 +30,11 @@ def residuals(
 ) -> Axes:
     """Measured less modelled over time, in the unit named in `quantity`."""
     _points(ax, ts, np.asarray(left), "measured − model")
-    ax.axhline(0, color=COLOURS["separatrix"], lw=1, zorder=1)
+    ax.axhline(0, color=colour_of("separatrix"), lw=1, zorder=1)
     ax.set(xlabel=f"time $t$ / {unit}", ylabel=f"measured − model, {quantity}")
     return ax
 
 
 def _points(ax: Axes, x: np.ndarray, y: np.ndarray, label: str) -> None:
     size = 1.6 if np.size(x) > 1000 else 3.5
-    ax.plot(x, y, "o", ms=size, mew=0, color=COLOURS["data"], label=label, zorder=2)
+    ax.plot(x, y, "o", ms=size, mew=0, color=colour_of("data"), label=label, zorder=2)

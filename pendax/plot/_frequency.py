@@ -3,7 +3,7 @@
 import numpy as np
 from matplotlib.axes import Axes
 
-from ._style import COLOURS
+from ._style import colour_of
 
 V0_LABEL = r"initial velocity $v_0/\sqrt{\varepsilon}$"
 OMEGA_LABEL = r"angular frequency $\omega/\sqrt{\varepsilon}$"
@@ -24,11 +24,11 @@ def frequency_curve(
     for side, label, mask in sides:
         if mask.sum() > 1:
             drawn = _thinned(x[mask], y[mask], most)
-            ax.plot(x[mask][drawn], y[mask][drawn], color=COLOURS[side], label=label)
+            ax.plot(x[mask][drawn], y[mask][drawn], color=colour_of(side), label=label)
     if x.min() <= 2 <= x.max():
         ax.axvline(
             2,
-            color=COLOURS["separatrix"],
+            color=colour_of("separatrix"),
             ls="--",
             lw=1,
             label=r"separatrix $v_0=2\sqrt{\varepsilon}$",
@@ -59,8 +59,8 @@ def measured_cycles(
         yerr=omega * period_error / np.asarray(period),
         fmt="o",
         ms=5,
-        color=COLOURS["data"],
-        ecolor=COLOURS["data"],
+        color=colour_of("data"),
+        ecolor=colour_of("data"),
         markeredgecolor="black",
         markeredgewidth=0.6,
         elinewidth=1,

@@ -4,7 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 
 from ..josephson import IVCurve
-from ._style import COLOURS
+from ._style import colour_of
 
 _PREFIXES = (("", 1.0), ("m", 1e-3), ("µ", 1e-6), ("n", 1e-9), ("p", 1e-12))
 
@@ -34,15 +34,15 @@ def iv_curve(ax: Axes, curve: IVCurve, *, label: str = "", errors: bool = True) 
     if np.allclose(up, down, rtol=0, atol=1e-6 * np.nanmax(np.abs(up), initial=0), equal_nan=True):
         branches = [("above", label or "both branches", up, 0)]
     for colour, name, voltage, way in branches:
-        ax.plot(current, voltage, color=COLOURS[colour], lw=1.4, label=name, zorder=3)
+        ax.plot(current, voltage, color=colour_of(colour), lw=1.4, label=name, zorder=3)
         if way:
-            _arrow(ax, current, voltage, way, COLOURS[colour])
+            _arrow(ax, current, voltage, way, colour_of(colour))
     if errors:
         for voltage, error in ((up, curve.error_up), (down, curve.error_down)):
             if error is not None:
                 off = np.asarray(error)[order] / volts
                 band = voltage - off, voltage + off
-                ax.fill_between(current, *band, color=COLOURS["separatrix"], alpha=0.4, lw=0)
+                ax.fill_between(current, *band, color=colour_of("separatrix"), alpha=0.4, lw=0)
     return ax
 
 
@@ -54,7 +54,7 @@ def measured_loop(ax: Axes, current: np.ndarray, voltage: np.ndarray, rising: np
         (rising, "measured, current rising", "data", 7, 0.35),
         (~rising, "measured, current falling", "next", 3.5, 1.0),
     ):
-        style = {"ms": size, "mew": 0, "color": COLOURS[colour], "alpha": alpha}
+        style = {"ms": size, "mew": 0, "color": colour_of(colour), "alpha": alpha}
         ax.plot(x[mask], y[mask], "o", label=name, zorder=2, **style)
     return ax
 

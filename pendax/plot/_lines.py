@@ -1,0 +1,43 @@
+"""A family of curves, told apart by a parameter."""
+
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import ListedColormap, Normalize
+from numpy.typing import ArrayLike
+
+from ._style import shades
+
+_MOST = 12  # entries of a legend; beyond, a colour bar
+
+
+def family(
+    ax: Axes,
+    x: ArrayLike,
+    y: ArrayLike,
+    values: ArrayLike | None,
+    name: str,
+    **line,
+) -> None:
+    """Rows of `y` over those of `x` (or over `x`), dark to light in the order given."""
+    values = None if values is None else np.asarray(values, float)
+    y = np.atleast_2d(np.asarray(y))
+    x = np.broadcast_to(np.asarray(x), y.shape)
+    if y.ndim != 2 or (values is not None and values.shape != y.shape[:1]):
+        raise ValueError(
+            f"Curves must be one, or rows with one of the `values` each, but got curves of shape "
+            f"{y.shape} with values of shape {np.shape(values)}."
+        )
+    colours = shades(len(y)) if len(y) > 1 else [None]
+    many = len(y) > _MOST
+    for i, colour in enumerate(colours):
+        label = None if many or values is None else f"{values[i]:.10g}"
+        ax.plot(x[i], y[i], color=colour, label=label, **({"lw": 0.9 if many else 1.5} | line))
+    if values is None:
+        return
+    if many:
+        span = Normalize(float(np.min(values)), float(np.max(values)))
+        mappable = ScalarMappable(span, ListedColormap(shades(256)))
+        ax.figure.colorbar(mappable, ax=ax, label=name)
+    else:
+        ax.legend(title=name, loc="center left", bbox_to_anchor=(1.0, 0.5))
