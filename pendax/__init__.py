@@ -10,7 +10,8 @@
     its geometry     geometry
     the junction     JosephsonJunction, iv_curve, FLUX_QUANTUM
     data             cycles, fit_frequency, fit_trajectory, fit_junction
-    elsewhere        pendax.special, pendax.solvers, pendax.plot, pendax.figures
+    elsewhere        pendax.special, pendax.solvers, pendax.plot, pendax.figures,
+                     pendax.report
 
 Angles are in radians; `help` of each name has the rest.
 """
@@ -69,6 +70,6 @@ from .josephson import iv_curve as iv_curve
 
 def __getattr__(name: str):
     # Matplotlib and diffrax are loaded when they are asked for, not before.
-    if name in ("plot", "figures", "solvers"):
+    if name in ("plot", "figures", "report", "solvers"):
         return import_module(f".{name}", __name__)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

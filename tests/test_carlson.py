@@ -50,7 +50,9 @@ def test_principal_values(name, dtype):
     check(function, carlson(name), columns, dtype, second=False, value=BARS[name])
 
 
-@pytest.mark.parametrize("name", FUNCTIONS)
+@pytest.mark.parametrize(
+    "name", [pytest.param(n, marks=pytest.mark.full) if n == "rj" else n for n in FUNCTIONS]
+)
 def test_at_the_ends_of_the_floats(name):
     function, count = FUNCTIONS[name]
     rng = np.random.default_rng(23)

@@ -87,6 +87,7 @@ def test_gradients(scene):
     np.testing.assert_allclose(one, other, rtol=1e-9, atol=1e-9)
 
 
+@pytest.mark.full  # compiles for most of a minute
 def test_second_derivatives():
     """By differences of first ones, of a scene that swings."""
     x, h = jnp.array(SCENES[2]), 1e-5
@@ -321,6 +322,7 @@ def test_fit_of_both_frictions():
     assert fit.result == Result.successful
 
 
+@pytest.mark.full  # two fits; the one of both frictions is there for every change
 def test_fit_of_dry_friction_alone_and_of_none():
     rng = np.random.default_rng(1)
     noise = 0.01 * rng.normal(size=FIT_TS.size)

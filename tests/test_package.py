@@ -32,11 +32,17 @@ def test_plots_load_when_asked_for():
     python("import pendax; pendax.plot.frequency_curve; pendax.figures.FIGURES['13']")
 
 
-def test_readme_example_runs():
-    blocks = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
-    assert blocks
-    for block in blocks:
-        python(block)
+BLOCKS = re.findall(r"```python\n(.*?)```", README, re.DOTALL)
+
+
+@pytest.mark.parametrize("block", BLOCKS, ids=lambda block: block.splitlines()[-1][:30])
+def test_readme_example_runs(block, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    python(block)
+
+
+def test_readme_has_examples():
+    assert len(BLOCKS) > 5
 
 
 def test_every_public_name_has_a_docstring():
@@ -49,10 +55,25 @@ def test_every_public_name_has_a_docstring():
                 assert len(getattr(module, name).__doc__ or "") > 40, name
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda p: p.stem)
-def test_notebook_runs(path):
+def execute(path):
     notebook = nbformat.read(path, as_version=4)
     NotebookClient(notebook, timeout=300, resources={"metadata": {"path": path.parent}}).execute()
+    return notebook
+
+
+@pytest.mark.parametrize("path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda p: p.stem)
+def test_notebook_runs(path):
+    pictures = sum("image/png" in str(cell.get("outputs")) for cell in execute(path).cells)
+    assert pictures >= 2
+
+
+@pytest.mark.full
+def test_fitting_a_real_swing(shared, monkeypatch):
+    """The recording that the notebook names, in place of the synthetic one."""
+    swing = shared / "data/pendulum/benard_free_swing_45deg.csv"
+    monkeypatch.setenv("PENDAX_SWING", str(swing))
+    text = str([cell.get("outputs") for cell in execute(ROOT / "notebooks/fitting.ipynb").cells])
+    assert "recording from PENDAX_SWING: 4871 samples" in text
 
 
 @pytest.mark.parametrize("path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda p: p.stem)

@@ -3,9 +3,13 @@
 import argparse
 import difflib
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from ._error import UserError
 from ._output import output_folder
+
+if TYPE_CHECKING:
+    from ..plot import Look
 
 SUMMARY = "every figure of the sources, and two films"
 DESCRIPTION = """\
@@ -43,7 +47,9 @@ def run(arguments: argparse.Namespace) -> None:
         print(f"{len(names)} figures, {len(files)} files, in {arguments.out}")
 
 
-def draw(names: list[str], folder: Path, look: str, formats: list[str], quiet: bool) -> list[str]:
+def draw(
+    names: list[str], folder: Path, look: "Look", formats: list[str], quiet: bool
+) -> list[str]:
     """Files written into the folder, in the order of the names."""
     import jax
     from tqdm import tqdm
@@ -65,8 +71,8 @@ def draw(names: list[str], folder: Path, look: str, formats: list[str], quiet: b
             for form in formats:
                 files.append(f"figure-{name}.{form}")
                 # No date in the file: the same figure is the same bytes.
-                dateless = {"metadata": {"Date": None}} if form == "svg" else {}
-                figure.savefig(folder / files[-1], **dateless)
+                dateless = {"Date": None} if form == "svg" else None
+                figure.savefig(folder / files[-1], metadata=dateless)
     return files
 
 

@@ -8,10 +8,10 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import NoReturn
 
-from . import _figures, _fit, _iv, _sweep
+from . import _claims, _figures, _fit, _iv, _sweep
 from ._error import UserError
 
-_COMMANDS = {"sweep": _sweep, "figures": _figures, "fit": _fit, "iv": _iv}
+_COMMANDS = {"sweep": _sweep, "figures": _figures, "report": _claims, "fit": _fit, "iv": _iv}
 
 
 def main(argv: Sequence[str] | None = None) -> int:

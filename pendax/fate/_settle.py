@@ -62,8 +62,8 @@ def settle(
     With dry friction it is followed until it is at rest, anywhere in the band
     |ε sin θ − τ| ≤ c, around the top as well; or until it creeps, so damped that it never turns
     again, towards the edge of that band.  Angle and time have derivatives of every mode and order
-    in all parameters, but where the number of swings changes, or whether they are enough for one
-    more turn: there they jump.
+    in all parameters, but where the number of swings changes (there the angle has a kink, and the
+    time jumps), or whether they are enough for one more turn (there both jump).
 
     **Arguments:**
 

@@ -6,8 +6,9 @@ from typing import NamedTuple
 
 import jax.numpy as jnp
 import numpy as np
-from matplotlib.animation import FuncAnimation, PillowWriter
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
+from PIL import Image
 
 from .._exact import period
 from .._geometry import geometry
@@ -31,8 +32,18 @@ class Animation(NamedTuple):
     def save(self, path: Path) -> None:
         """As a GIF, by Pillow, in the style in force."""
         figure, draw, count = self.make()
-        film = FuncAnimation(figure, lambda n: draw(n) or (), frames=count, init_func=lambda: ())
-        film.save(path, PillowWriter(_RATE), dpi=80)
+        figure.set_dpi(80)
+        canvas = FigureCanvasAgg(figure)
+        frames = []
+        for n in range(count):
+            draw(n)
+            canvas.draw()
+            figure.set_layout_engine("none")  # one layout for all frames
+            frame = Image.fromarray(np.asarray(canvas.buffer_rgba())).convert("RGB")
+            frames.append(frame.quantize(64))
+        frames[0].save(
+            path, save_all=True, append_images=frames[1:], duration=1000 // _RATE, loop=0
+        )
 
 
 def _construction() -> Scene:
@@ -86,6 +97,7 @@ def _retrapping() -> Scene:
     left.set(xlim=(-1.25, 1.25), ylim=(-1.25, 1.25))
     left.set_aspect("equal")
     left.axis("off")
+    left.plot(0, 0, "o", color=colour_of("separatrix"), ms=7)
     (rod,) = left.plot([], [], "-", color=colour_of("law"), lw=3)
     (bob,) = left.plot([], [], "o", color=colour_of("above"), ms=16)
     (trace,) = right.plot([], [], color=colour_of("below"), lw=1.0)

@@ -25,7 +25,7 @@ def damped(
     ts = np.linspace(0, end, TIMES)
     beta, tau = np.broadcast_arrays(np.atleast_1d(beta), tau)
     pendulum = Pendulum(1.0, jnp.asarray(_padded(beta)), jnp.asarray(_padded(tau)))
-    run = simulate(pendulum, jnp.asarray(ts), jnp.full(pendulum.beta.shape, v0))
+    run = simulate(pendulum, jnp.asarray(ts), jnp.full(-(-beta.size // _LANES) * _LANES, v0))
     return ts, np.asarray(run.theta)[: beta.size], np.asarray(run.v)[: beta.size]
 
 

@@ -30,7 +30,7 @@ def _sketch(torque: bool) -> Figure:
     degrees = np.degrees(_ANGLE)
     ax.add_patch(Arc((0, 0), 0.6, 0.6, theta1=-90, theta2=-90 + degrees, color=colour_of("law")))
     ax.annotate("θ", (0.13, -0.42), fontsize=13)
-    ax.annotate("l", 0.3 * bob + [0.05, 0.03], fontsize=13)
+    ax.annotate("l", tuple(0.3 * bob + [0.05, 0.03]), fontsize=13)
     tangent = -np.array([np.cos(_ANGLE), np.sin(_ANGLE)])
     _force(ax, bob, bob - np.array([0, 0.45]), "mg", (8, 0), "below")
     _force(ax, bob, bob + 0.45 * np.sin(_ANGLE) * tangent, "mg sin θ", (-4, -16), "next")
@@ -50,9 +50,11 @@ def _sketch(torque: bool) -> Figure:
 
 def _force(ax: Axes, start, end, name: str, offset: tuple[int, int], colour: str) -> None:
     arrow = {"arrowstyle": "-|>", "lw": 2.2, "color": colour_of(colour), "mutation_scale": 16}
-    ax.annotate("", end, start, arrowprops=arrow, zorder=4)
-    ax.annotate(name, end, xytext=offset, textcoords="offset points", color=colour_of(colour),
-                fontsize=11, ha="left" if offset[0] > 0 else "right")  # fmt: skip
+    ax.annotate("", tuple(end), tuple(start), arrowprops=arrow, zorder=4)
+    ax.annotate(
+        name, tuple(end), xytext=offset, textcoords="offset points", color=colour_of(colour),
+        fontsize=11, ha="left" if offset[0] > 0 else "right",
+    )  # fmt: skip
 
 
 def _potential() -> Figure:

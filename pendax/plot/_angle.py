@@ -16,6 +16,7 @@ class _Multiples(Locator):
         self.most = most
 
     def __call__(self):
+        assert self.axis is not None
         return self.tick_values(*self.axis.get_view_interval())
 
     def tick_values(self, vmin, vmax):

@@ -32,7 +32,13 @@ def fate_map(ax: Axes, x: ArrayLike, y: ArrayLike, ends: Settled, *, most: int =
     ax.set_facecolor("0.35")
     ax.grid(False)
     edges = BoundaryNorm(np.arange(low, high + 2) - 0.5, len(wells))
-    image = ax.pcolormesh(x, y, shown, cmap=colours, norm=edges, rasterized=True)
-    bar = ax.figure.colorbar(image, ax=ax, label="well $n$; grey: runs for ever")
-    bar.set_ticks(wells, labels=[str(n).replace("-", "−") for n in wells])
+    grid = np.asarray(x), np.asarray(y)
+    image = ax.pcolormesh(*grid, shown, cmap=colours, norm=edges, rasterized=True)
+    beyond = (bool((well[captured] < low).any()), bool((well[captured] > high).any()))
+    arrows = {(True, True): "both", (True, False): "min", (False, True): "max"}.get(
+        beyond, "neither"
+    )
+    label = "well $n$" + ("" if captured.all() else "; grey: runs for ever")
+    bar = ax.figure.colorbar(image, ax=ax, label=label, extend=arrows)
+    bar.set_ticks(wells.tolist(), labels=[str(n).replace("-", "−") for n in wells])
     return ax

@@ -60,8 +60,10 @@ def construction(ax: Axes, pendulum: Pendulum, theta: float, v: float) -> Axes:
         ax.plot(
             *xy, "o", ms=11 if big else 3.5, color=colour_of("above" if big else "law"), zorder=4
         )
-        ax.annotate(name.replace("1", "′"), xy, xytext=_OFFSETS[name], textcoords="offset points",
-                    ha="center", va="center", fontsize=10, zorder=5)  # fmt: skip
+        ax.annotate(
+            name.replace("1", "′"), tuple(xy), xytext=_OFFSETS[name], textcoords="offset points",
+            ha="center", va="center", fontsize=10, zorder=5,
+        )  # fmt: skip
     ax.set_aspect("equal")
     wide = max(1.2, 0.5 * height + 0.1)
     ax.set(xlim=(-wide, wide), ylim=(-1.2, max(1.2, height - 0.85)))

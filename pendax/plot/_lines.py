@@ -17,22 +17,22 @@ def family(
     y: ArrayLike,
     values: ArrayLike | None,
     name: str,
-    **line,
 ) -> None:
     """Rows of `y` over those of `x` (or over `x`), dark to light in the order given."""
+    count = None if values is None else np.shape(values)
     values = None if values is None else np.asarray(values, float)
     y = np.atleast_2d(np.asarray(y))
     x = np.broadcast_to(np.asarray(x), y.shape)
-    if y.ndim != 2 or (values is not None and values.shape != y.shape[:1]):
+    if y.ndim != 2 or (count is not None and count != y.shape[:1]):
         raise ValueError(
             f"Curves must be one, or rows with one of the `values` each, but got curves of shape "
-            f"{y.shape} with values of shape {np.shape(values)}."
+            f"{y.shape} with values of shape {count}."
         )
     colours = shades(len(y)) if len(y) > 1 else [None]
     many = len(y) > _MOST
     for i, colour in enumerate(colours):
         label = None if many or values is None else f"{values[i]:.10g}"
-        ax.plot(x[i], y[i], color=colour, label=label, **({"lw": 0.9 if many else 1.5} | line))
+        ax.plot(x[i], y[i], color=colour, label=label, lw=0.9 if many else 1.5)
     if values is None:
         return
     if many:

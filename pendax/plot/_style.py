@@ -5,6 +5,7 @@ from typing import Any, Literal
 
 import matplotlib as mpl
 import numpy as np
+from cycler import cycler
 from matplotlib.colors import to_rgb
 from matplotlib.figure import Figure
 
@@ -36,7 +37,7 @@ STYLE: dict[Any, Any] = {
     "axes.grid": True,
     "axes.spines.top": False,
     "axes.spines.right": False,
-    "axes.prop_cycle": mpl.cycler(color=["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#777777"]),
+    "axes.prop_cycle": cycler(color=["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#777777"]),
     "grid.alpha": 0.3,
     "legend.frameon": False,
     "lines.linewidth": 1.8,
@@ -48,7 +49,7 @@ DARK_STYLE: dict[Any, Any] = STYLE | {
     "figure.facecolor": _GROUND,
     "axes.facecolor": _GROUND,
     "savefig.facecolor": _GROUND,
-    "axes.prop_cycle": mpl.cycler(color=["#56B4E9", "#F0853A", "#2FC79A", "#E29BC3", "#9A9A9A"]),
+    "axes.prop_cycle": cycler(color=["#56B4E9", "#F0853A", "#2FC79A", "#E29BC3", "#9A9A9A"]),
     **dict.fromkeys(("text.color", "axes.edgecolor", "axes.labelcolor"), _INK),
     **dict.fromkeys(("xtick.color", "ytick.color"), _INK),
     "grid.color": "#6A6F78",
