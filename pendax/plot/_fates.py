@@ -35,9 +35,7 @@ def fate_map(ax: Axes, x: ArrayLike, y: ArrayLike, ends: Settled, *, most: int =
     grid = np.asarray(x), np.asarray(y)
     image = ax.pcolormesh(*grid, shown, cmap=colours, norm=edges, rasterized=True)
     beyond = (bool((well[captured] < low).any()), bool((well[captured] > high).any()))
-    arrows = {(True, True): "both", (True, False): "min", (False, True): "max"}.get(
-        beyond, "neither"
-    )
+    arrows = ("neither", "max", "min", "both")[2 * beyond[0] + beyond[1]]
     label = "well $n$" + ("" if captured.all() else "; grey: runs for ever")
     bar = ax.figure.colorbar(image, ax=ax, label=label, extend=arrows)
     bar.set_ticks(wells.tolist(), labels=[str(n).replace("-", "−") for n in wells])

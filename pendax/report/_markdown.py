@@ -101,7 +101,7 @@ def _worst(check: Check) -> tuple[np.ndarray, np.ndarray]:
         return claimed, found
     off = np.nan_to_num(np.abs(claimed - found), nan=np.inf).ravel()
     at = int(np.argmax(off))
-    return claimed.ravel()[at], found.ravel()[at]
+    return claimed.ravel()[at : at + 1], found.ravel()[at : at + 1]
 
 
 def _erratum(erratum: Erratum, proof: Proof | None) -> str:
