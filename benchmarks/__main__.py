@@ -52,6 +52,8 @@ def main() -> int:
     fit.add_argument("--scenes", type=int, default=1000, help="random scenes")
     fit.add_argument("--rounds", type=int, default=5, help="timings of each, interleaved")
     fit.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
+    stability = commands.add_parser("stability", help="stiff and extreme cases, beside peers")
+    stability.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
     options = vars(parser.parse_args())
 
     import jax

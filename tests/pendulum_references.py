@@ -6,6 +6,8 @@ from itertools import combinations_with_replacement
 import flint
 import references
 
+ARGUMENTS = range(4)  # ε, t, v0, θ0
+
 
 def motion(epsilon, t, v0, theta0) -> tuple[flint.arb, flint.arb]:
     """θ (unwrapped) and θ̇ for balls, in the precision of the caller."""
@@ -119,3 +121,15 @@ def derivatives(point, order=2) -> dict[tuple[int, ...], tuple]:
                         for p, q, r, s in zip(*corners, strict=True)
                     )
         return result
+
+
+def magnitude(row, d, f, order=()):
+    """|g| + Σ |x ∂g/∂x| of the derivative `order` of θ (f = 0) or v (f = 1)."""
+    slopes = (d[tuple(sorted((*order, i)))][f] for i in ARGUMENTS)
+    return abs(float(d[order][f])) + sum(
+        abs(x * float(slope)) for x, slope in zip(row, slopes, strict=True)
+    )
+
+
+def units(row):
+    return [abs(row[0]), *(max(abs(x), 1) for x in row[1:])]

@@ -8,12 +8,12 @@ import numpy as np
 import pendulum_references as references
 import pytest
 from flint import arb
+from pendulum_references import ARGUMENTS, magnitude, units
 from starts import TAGS, starts
 
 from pendax import Pendulum, simulate
 
 SIZE = 12
-ARGUMENTS = range(4)  # ε, t, v0, θ0
 
 
 def state(x):
@@ -35,18 +35,6 @@ def compiled(mode=None):
 def references_of(tag, dtype, order):
     rows = starts(dtype, SIZE)[tag]
     return rows, [references.derivatives(row, order) for row in rows]
-
-
-def magnitude(row, d, f, order=()):
-    """|g| + Σ |x ∂g/∂x| of the derivative `order` of θ (f = 0) or v (f = 1)."""
-    slopes = (d[tuple(sorted((*order, i)))][f] for i in ARGUMENTS)
-    return abs(float(d[order][f])) + sum(
-        abs(x * float(slope)) for x, slope in zip(row, slopes, strict=True)
-    )
-
-
-def units(row):
-    return [abs(row[0]), *(max(abs(x), 1) for x in row[1:])]
 
 
 @pytest.mark.parametrize("tag", TAGS)

@@ -1,5 +1,6 @@
 """What a fresh user sees first: imports, README, notebooks."""
 
+import ast
 import re
 import subprocess
 import sys
@@ -22,6 +23,33 @@ def test_import_is_lean():
     code = "import sys, pendax; print(*sorted(m for m in sys.modules))"
     loaded = python(code).split()
     assert not [m for m in loaded if m.startswith(heavy)]
+
+
+def test_a_room_is_loaded_when_it_is_asked_for():
+    show = "print(*sorted(m for m in sys.modules if m.startswith('pendax.')))"
+    assert "jax" not in python("import sys, pendax; print(*sys.modules)").split()
+    loaded = python(f"import sys, pendax; pendax.frequency; {show}").split()
+    assert "pendax._exact" in loaded
+    rooms = ("fate", "fit", "josephson", "taylor", "_simulate")
+    assert not [m for m in loaded if m.split(".")[1] in rooms]
+    special = python(f"import sys; from pendax.special import ellipk; {show}").split()
+    assert all(m.split(".")[1] in ("special", "_arrays") for m in special)
+
+
+def test_public_names_are_where_they_are_said_to_be():
+    """Those for type checkers, those that are loaded when asked for, and the help."""
+    import pendax
+
+    tree = ast.parse((ROOT / "pendax/__init__.py").read_text(encoding="utf-8"))
+    (block,) = (node for node in tree.body if isinstance(node, ast.If))
+    said = {a.name: f".{n.module or ''}" for n in block.body for a in n.names}
+    assert {n for n, room in said.items() if room == "."} == set(pendax._MODULES)
+    assert {n: room for n, room in said.items() if room != "."} == pendax._HOME
+    for name in said:
+        assert name in dir(pendax)
+        assert getattr(pendax, name) is not None
+    with pytest.raises(AttributeError, match="no attribute 'frequencies'"):
+        pendax.frequencies  # noqa: B018  # pyright: ignore[reportAttributeAccessIssue]
 
 
 def test_import_leaves_the_settings_of_jax_alone():

@@ -1,6 +1,6 @@
 """A claim of a source, what is found, and the verdict; a misprint, and its proof."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from typing import Literal, NamedTuple
 
@@ -10,11 +10,13 @@ from numpy.typing import ArrayLike
 
 class Check(NamedTuple):
     """What a source claims and what is found, numbers or arrays that broadcast, and how far
-    apart they may be, absolutely: the precision to which the source states it."""
+    apart they may be, absolutely: the precision to which the source states it.  `corrected`:
+    what the erratum puts in the place of a claim that does not hold, where it is a number."""
 
     claimed: ArrayLike
     found: ArrayLike
     tolerance: ArrayLike
+    corrected: ArrayLike | None = None
 
     def agrees(self) -> np.ndarray:
         """Whether each claimed value is the one found."""
@@ -52,13 +54,14 @@ class Proof(NamedTuple):
         return bool(not wrong.any() and right.all())
 
 
-Kind = Literal["formula", "statement", "program", "text"]
+# A remark: right as the source uses it, or incomplete; its proof shows where it ends.
+Kind = Literal["formula", "statement", "program", "remark", "text"]
 
 
 @dataclass(frozen=True)
 class Erratum:
-    """What is `printed` where, what is `correct`, and the proof; `None` for a slip of wording or
-    numbering, which no number can prove."""
+    """What is `printed` where, what is `correct`, the quantity `compared` and the proof; `None`
+    for a slip of wording or numbering, which no number can prove."""
 
     id: str
     kind: Kind
@@ -66,6 +69,7 @@ class Erratum:
     printed: str
     correct: str
     proof: Callable[[], Proof] | None
+    compared: str = ""
 
 
 class Verdict(NamedTuple):
@@ -78,22 +82,25 @@ class Verdict(NamedTuple):
     digits: float
 
 
-def verdict(claim: Claim, check: Check, errata: dict[str, Erratum]) -> Verdict:
-    """Reproduced where every value agrees; else by the kind of the erratum that explains it."""
+def verdict(
+    claim: Claim, check: Check, errata: Mapping[str, Erratum], proved: Mapping[str, bool]
+) -> Verdict:
+    """Reproduced where every value agrees; else by the kind of the errata cited, if their proofs
+    hold and, where a corrected value is given, it is the one found."""
     agrees = check.agrees()
     claimed, found = np.broadcast_arrays(
         np.asarray(check.claimed, float), np.asarray(check.found, float)
     )
     agrees = np.broadcast_to(agrees, claimed.shape)
-    kinds = {errata[name].kind for name in claim.errata if name in errata}
+    explained = check.corrected is None or check._replace(claimed=check.corrected).agrees().all()
+    kinds = {errata[name].kind for name in claim.errata}
     if agrees.all():
         word = "reproduced"
-    elif "statement" in kinds:
-        word = "corrected"
+    elif not kinds or not explained or not all(proved.get(name, True) for name in claim.errata):
+        word = "unexplained"
     else:
-        word = "misprint" if kinds else "unexplained"
+        word = "corrected" if kinds & {"statement", "program", "remark"} else "misprint"
     off = np.abs(claimed - found)[agrees & (claimed != found)]
-    sizes = (claimed, found, np.asarray(check.tolerance, float))
-    size = max(np.max(np.abs(x[np.isfinite(x)]), initial=0.0) for x in sizes) or 1.0
+    size = max(np.max(np.abs(x[np.isfinite(x)]), initial=0.0) for x in (claimed, found)) or 1.0
     digits = -np.log10(np.max(off, initial=0.0) / size) if off.size else np.inf
     return Verdict(word, int(agrees.sum()), int(agrees.size), float(min(digits, 16.0)))

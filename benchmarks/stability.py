@@ -1,0 +1,244 @@
+"""Stiff and extreme cases: errors of motions and their derivatives, beside SciPy and diffrax.
+
+Errors of the closed form are in eps of |θ| + Σ |x ∂θ/∂x| (at v0 = 2 and ε = 1, where floats hold
+the distance from the separatrix, of that distance in place of v0), those of its derivatives in eps
+of their own scale.  Errors of solved scenes are in tolerance × (1 + max|y|) × (1 + κ); those of
+derivatives relative to the largest of them.  All against Arb.  Peers: the error of θ on the
+same scale, SciPy's `ellipj` in the textbook's formula and DOP853 or Radau, diffrax's own
+`diffeqsolve` with Dopri8 or Kvaerno5, at the same tolerance.
+"""
+
+import warnings
+from functools import partial
+from typing import NamedTuple
+
+import damped_references
+import diffrax as dfx
+import flint
+import jax
+import jax.numpy as jnp
+import numpy as np
+import pendulum_references as closed
+from scipy.integrate import solve_ivp
+from scipy.special import ellipj
+
+from pendax import Pendulum, condition, period, simulate
+
+from . import results
+
+CLOSED_BAR, CLOSED_SLOPES, SOLVED_BAR, SOLVED_SLOPES = 16.0, 50_000.0, 50.0, 1e-7
+RTOL = {"float64": 1e-10, "float32": 1e-5}
+
+
+class Free(NamedTuple):
+    name: str
+    epsilon: float
+    v0: float
+    theta0: float
+    t: float
+
+
+class Solved(NamedTuple):
+    name: str
+    epsilon: float
+    beta: float
+    tau: float
+    v0: float
+    theta0: float
+    t: float
+
+    @property
+    def stiff(self) -> bool:
+        return self.beta > 50 * self.epsilon**0.5
+
+
+def free_cases(dtype: np.dtype) -> list[Free]:
+    two, pi = dtype.type(2), dtype.type(np.pi)
+    below, above = (float(np.nextafter(two, dtype.type(x))) for x in (0, 3))
+    tiny = 1e-300 if dtype == np.float64 else 1e-30
+    million = float(dtype.type(1e6 * float(period(Pendulum(), 1.9))))
+    rows = [
+        Free("on the separatrix", 1.0, 2.0, 0.0, 30.0),
+        Free("one float below it", 1.0, below, 0.0, 60.0),
+        Free("one float above it", 1.0, above, 0.0, 60.0),
+        Free(f"v0 = {tiny:.0e}", 1.0, tiny, 0.0, 10.0),
+        Free("v0 = 1e8", 1.0, 1e8, 0.0, 10.0),
+        Free("ε = 1e-12", 1e-12, 1.9e-6, 0.5, 1e7),
+        Free("ε = 1e12", 1e12, 1.9e6, 0.5, 1e-5),
+        Free("10⁶ periods", 1.0, 1.9, 0.0, million),
+        Free("θ0 = π", 1.0, 0.0, float(pi), 40.0),
+        Free("θ0 one float below π", 1.0, 0.0, float(np.nextafter(pi, dtype.type(0))), 100.0),
+    ]
+    return [Free(row.name, *(float(dtype.type(x)) for x in row[1:])) for row in rows]
+
+
+def solved_cases(dtype: np.dtype) -> list[Solved]:
+    edge = 1e-12 if dtype == np.float64 else 1e-6
+    rows = [
+        Solved("β = 1e-8", 1.0, 1e-8, 0.0, 1.9, 0.0, 300.0),
+        Solved("β = 1e2", 1.0, 1e2, 0.5, 1.0, 0.0, 1e3),
+        Solved("β = 1e5", 1.0, 1e5, 0.5, 1.0, 0.0, 1e6),
+        Solved("β = 1e8", 1.0, 1e8, 0.5, 1.0, 0.0, 1e9),
+        Solved("β = 1e8, τ > ε", 1.0, 1e8, 1.5, 1.0, 0.0, 1e9),
+        Solved(f"τ = ε − {edge:.0e}", 1.0, 0.16, 1 - edge, 0.0, 1.5, 60.0),
+        Solved(f"τ = ε + {edge:.0e}", 1.0, 0.16, 1 + edge, 0.0, 1.5, 60.0),
+        Solved("ε = 1e12", 1e12, 1e5, 3e11, 1.9e6, 0.0, 3e-5),
+        Solved("ε = 1e-12", 1e-12, 1e-7, 3e-13, 1.9e-6, 0.0, 3e7),
+        Solved("v0 = 1e4", 1.0, 1.0, 0.0, 1e4, 0.0, 5.0),
+    ]
+    return [Solved(row.name, *(float(dtype.type(x)) for x in row[1:])) for row in rows]
+
+
+def report(check: bool) -> int:
+    rows = []
+    for name in ("float64", "float32"):
+        dtype = np.dtype(name)
+        with jax.enable_x64(name == "float64"):
+            rows += [free_row(case, dtype) for case in free_cases(dtype)]
+            rows += [solved_row(case, dtype) for case in solved_cases(dtype)]
+    print(__doc__.split("\n\n")[1], end="\n\n")
+    print(results.markdown(rows))
+    path = results.write("stability", rows)
+    missed = [f"{row['scene']} ({row['dtype']})" for row in rows if row["verdict"] != "met"]
+    print(f"\nmissed: {', '.join(missed) or 'none'}; written: {path}")
+    return 1 if check and missed else 0
+
+
+def free_row(case: Free, dtype: np.dtype) -> dict:
+    point = [case.epsilon, case.t, case.v0, case.theta0]
+    d = closed.derivatives(point, 2)
+    scale = closed.magnitude(point, d, 0)
+    if case.theta0 == 0 and abs(case.v0 - 2) < 1e-6 and case.epsilon == 1:
+        scale = abs(float(d[()][0])) + abs(case.t * float(d[1,][0]))
+        scale += abs((case.v0 - 2) * float(d[2,][0]))
+    unit = float(np.finfo(dtype).eps) * max(scale, float(np.finfo(dtype).tiny))
+
+    def theta(x):
+        return simulate(Pendulum(x[0]), x[1], x[2], x[3]).theta
+
+    x = jnp.asarray(point, dtype)
+    error = _off(jax.jit(theta)(x), d[()][0]) / unit
+    slopes, units = np.asarray(jax.jit(jax.jacfwd(theta))(x), float), closed.units(point)
+    slope_error = 0.0
+    for i in closed.ARGUMENTS:
+        of_slope = closed.magnitude(point, d, 0, (i,)) + closed.magnitude(point, d, 0) / units[i]
+        slope_error = max(slope_error, _off(slopes[i], d[i,][0]) / of_slope)
+    slope_error /= float(np.finfo(dtype).eps)
+    met = error <= CLOSED_BAR and slope_error <= CLOSED_SLOPES
+    row = _row(case.name, dtype, "closed form", error, slope_error, None, met)
+    if dtype == np.float64:
+        scene = Solved(case.name, case.epsilon, 0.0, 0.0, case.v0, case.theta0, case.t)
+        true = float(d[()][0])
+        row["SciPy, ellipj"] = _textbook(case, true, unit)
+        row["SciPy, solver"] = _scipy(scene, true, unit, 1e-13)
+        row["diffrax"] = _diffrax(scene, true, unit, 1e-13)
+    return row
+
+
+def solved_row(case: Solved, dtype: np.dtype) -> dict:
+    rtol = RTOL[dtype.name]
+    names = ("beta", "tau", "epsilon", "v0", "theta0")
+    arguments = (case.epsilon, case.beta, case.tau, case.theta0, case.v0, [case.t])
+    if case.stiff:
+        true = damped_references.overdamped(*arguments)[0]
+    else:
+        true = damped_references.trajectory(*arguments, names)[0]
+    run = partial(_simulated, rtol)
+    x = jnp.asarray([case.beta, case.tau, case.epsilon, case.v0, case.theta0, case.t], dtype)
+    theta, steps, largest = jax.jit(run)(x)
+    grid = jnp.linspace(0, case.t, 101)[1:].astype(dtype)
+    scene = Pendulum(*(jnp.asarray(c, dtype) for c in (case.epsilon, case.beta, case.tau)))
+    v0, theta0 = jnp.asarray(case.v0, dtype), jnp.asarray(case.theta0, dtype)
+    kappa = float(jnp.max(condition(scene, grid, v0, theta0)))
+    unit = rtol * (1 + float(largest)) * (1 + kappa)
+    error, slope_error = _off(theta, true[0]) / unit, None
+    if not case.stiff:
+        slopes = np.asarray(jax.jit(jax.jacfwd(lambda x: run(x)[0]))(x), float)[:5]
+        scale = np.abs(true[2::2]).max()
+        slope_error = float(np.max(np.abs(slopes - true[2::2])) / scale)
+    bar = SOLVED_SLOPES if dtype == np.float64 else 1e-2
+    met = error <= SOLVED_BAR and (slope_error or 0.0) <= bar * (1 + kappa)
+    method = simulate(scene, grid[-1], v0, theta0, rtol=rtol).method
+    row = _row(case.name, dtype, method, error, slope_error, int(steps), met)
+    if dtype == np.float64:
+        row["SciPy, solver"] = _scipy(case, true[0], unit, rtol)
+        row["diffrax"] = _diffrax(case, true[0], unit, rtol)
+    return row
+
+
+def _simulated(rtol, x):
+    scene = Pendulum(x[2], x[0], x[1])
+    run = simulate(scene, x[5] * jnp.arange(1, 11, dtype=x.dtype) / 10, x[3], x[4], rtol=rtol,
+                   throw=False)  # fmt: skip
+    largest = jnp.max(jnp.maximum(jnp.abs(run.theta), jnp.abs(run.v)))
+    steps = run.stats.get("steps", jnp.zeros((), int))
+    return run.theta[-1], steps, largest
+
+
+def _row(name, dtype, method, error, slope_error, steps, met) -> dict:
+    return {
+        "scene": name,
+        "dtype": dtype.name,
+        "by": method,
+        "error": float(error),
+        "of derivatives": slope_error,
+        "steps": steps,
+        "verdict": "met" if met else "missed",
+        **dict.fromkeys(("SciPy, ellipj", "SciPy, solver", "diffrax")),
+    }
+
+
+def _off(value, true) -> float:
+    with flint.ctx.workprec(300):
+        return abs(float(flint.arb(float(value)) - flint.arb(true)))
+
+
+def _textbook(case: Free, true: float, unit: float) -> float | None:
+    """2 arcsin(k sn) or 2 am, which start from the bottom."""
+    if case.theta0:
+        return None
+    u, modulus = case.epsilon**0.5 * case.t, case.v0 / (2 * case.epsilon**0.5)
+    if modulus <= 1:
+        found = 2 * np.arcsin(modulus * ellipj(u, modulus**2)[0])
+    else:
+        found = 2 * ellipj(u * modulus, modulus**-2)[3]
+    return float(abs(found - true) / unit)
+
+
+def _scipy(case: Solved, true: float, unit: float, rtol: float) -> float | None:
+    """`None` where it would take more than a million steps."""
+    if _too_long(case):
+        return None
+
+    def field(t, y):
+        return y[1], case.tau - case.beta * y[1] - case.epsilon * np.sin(y[0])
+
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # of tolerances below its least
+        run = solve_ivp(field, (0, case.t), (case.theta0, case.v0),
+                        "Radau" if case.stiff else "DOP853", rtol=rtol, atol=rtol)  # fmt: skip
+    return float(abs(run.y[0, -1] - true) / unit) if run.success else float("inf")
+
+
+def _diffrax(case: Solved, true: float, unit: float, rtol: float) -> float | None:
+    if _too_long(case):
+        return None
+
+    def field(t, y, args):
+        return y[1], case.tau - case.beta * y[1] - case.epsilon * jnp.sin(y[0])
+
+    solver = dfx.Kvaerno5() if case.stiff else dfx.Dopri8()
+    run = dfx.diffeqsolve(
+        dfx.ODETerm(field), solver, 0.0, case.t, None,
+        (jnp.asarray(case.theta0), jnp.asarray(case.v0)),
+        stepsize_controller=dfx.PIDController(rtol=rtol, atol=rtol), max_steps=1_000_000,
+        throw=False, adjoint=dfx.ForwardMode(),
+    )  # fmt: skip
+    if not bool(run.result == dfx.RESULTS.successful):
+        return float("inf")
+    return float(abs(run.ys[0][0] - true) / unit)
+
+
+def _too_long(case: Solved) -> bool:
+    turns = case.t * max(abs(case.v0), case.epsilon**0.5)
+    return not case.stiff and turns > 1e6
