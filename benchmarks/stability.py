@@ -2,10 +2,11 @@
 
 Errors of the closed form are in eps of |θ| + Σ |x ∂θ/∂x| (at v0 = 2 and ε = 1, where floats hold
 the distance from the separatrix, of that distance in place of v0), those of its derivatives in eps
-of their own scale.  Errors of solved scenes are in tolerance × (1 + max|y|) × (1 + κ); those of
-derivatives relative to the largest of them.  All against Arb.  Peers: the error of θ on the
-same scale, SciPy's `ellipj` in the textbook's formula and DOP853 or Radau, diffrax's own
-`diffeqsolve` with Dopri8 or Kvaerno5, at the same tolerance.
+of their own scale.  Errors of solved scenes are in tolerance × (1 + max|y|) × (1 + κ), those of
+derivatives g in x in tolerance × (|g| + scale(θ)/max(|x|, 1)) × (1 + κ).  All against Arb.  Peers:
+the error of θ on the same scale; SciPy's `ellipj` in the textbook's formula, its DOP853 or Radau,
+diffrax's own `diffeqsolve` with Dopri8 or Kvaerno5, at the same tolerance (1e-13 beside the closed
+form); inf where they give up, empty where they would take more than a million steps.
 """
 
 import warnings
@@ -26,7 +27,7 @@ from pendax import Pendulum, condition, period, simulate
 
 from . import results
 
-CLOSED_BAR, CLOSED_SLOPES, SOLVED_BAR, SOLVED_SLOPES = 16.0, 50_000.0, 50.0, 1e-7
+CLOSED_BAR, CLOSED_SLOPES, SOLVED_BAR, SOLVED_SLOPES = 16.0, 50_000.0, 50.0, 1000.0
 RTOL = {"float64": 1e-10, "float32": 1e-5}
 
 
@@ -154,10 +155,11 @@ def solved_row(case: Solved, dtype: np.dtype) -> dict:
     error, slope_error = _off(theta, true[0]) / unit, None
     if not case.stiff:
         slopes = np.asarray(jax.jit(jax.jacfwd(lambda x: run(x)[0]))(x), float)[:5]
-        scale = np.abs(true[2::2]).max()
-        slope_error = float(np.max(np.abs(slopes - true[2::2])) / scale)
-    bar = SOLVED_SLOPES if dtype == np.float64 else 1e-2
-    met = error <= SOLVED_BAR and (slope_error or 0.0) <= bar * (1 + kappa)
+        exact, size = np.abs(true[2::2]), np.abs(np.asarray(x, float)[:5])
+        units = np.maximum(size, [1, 1, 0, 1, 1])
+        scale = exact + (abs(true[0]) + (size * exact).sum()) / units
+        slope_error = float(np.max(np.abs(slopes - true[2::2]) / scale)) / rtol / (1 + kappa)
+    met = error <= SOLVED_BAR and (slope_error or 0.0) <= SOLVED_SLOPES
     method = simulate(scene, grid[-1], v0, theta0, rtol=rtol).method
     row = _row(case.name, dtype, method, error, slope_error, int(steps), met)
     if dtype == np.float64:
