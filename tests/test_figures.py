@@ -128,10 +128,8 @@ def test_command_lists_and_draws(tmp_path, capsys):
     listed = [line.split()[0] for line in capsys.readouterr().out.splitlines()]
     assert listed == [*FIGURES, *ANIMATIONS]
     out = tmp_path / "out"
-    assert main(["figures", "--only", "10", "7a", "--out", str(out), "--quiet"]) == 0
-    drawn = {
-        f"figure-{n}.{form}" for n in ("10", "10a", "10b", "10c", "7a") for form in ("png", "svg")
-    }
+    assert main(["figures", "--only", "10", "7", "--out", str(out), "--quiet"]) == 0
+    drawn = {f"figure-{n}.{form}" for n in ("10", "7a", "7b") for form in ("png", "svg")}
     assert {path.name for path in out.iterdir()} == drawn
     assert (out / "figure-7a.svg").read_text().startswith("<?xml")
     assert capsys.readouterr().out == ""
@@ -146,9 +144,11 @@ def test_the_same_figure_is_the_same_file(tmp_path):
 
 
 def test_an_unknown_name_says_which_are_near(tmp_path, capsys):
-    assert main(["figures", "--only", "5a", "5z", "--out", str(tmp_path / "out")]) == 2
+    assert main(["figures", "--only", "5A", "5z", "qq", "--out", str(tmp_path / "out")]) == 2
     said = capsys.readouterr().err
-    assert "there is no figure '5z'; did you mean 5" in said
+    assert "no figure '5z' (5" in said
+    assert "'qq'; --list names them all" in said
+    assert "5A" not in said
     assert not (tmp_path / "out").exists()
 
 

@@ -5,6 +5,7 @@ import inspect
 import matplotlib as mpl
 import numpy as np
 import pytest
+from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
 import pendax
@@ -95,6 +96,26 @@ def test_looks():
         assert plot.colour_of("law") == plot.COLOURS["law"]
     with pytest.raises(ValueError, match="`look` must be 'light' or 'dark', but got 'dim'"):
         inspect.unwrap(plot.style)("dim")  # pyright: ignore[reportArgumentType]
+
+
+def test_legends_stay_within_the_figure(ax):
+    """Beside the axes only where the layout makes room."""
+    plot.time_series(ax, TS, np.ones((2, TS.size)), [1.0, 2.0], name="$v_0$")
+    figure = ax.figure
+    canvas = FigureCanvasAgg(figure)
+    canvas.draw()
+    box = ax.get_legend().get_window_extent(canvas.get_renderer())
+    assert figure.bbox.contains(box.x1, box.y1)
+    assert ax.bbox.contains(box.x0, box.y0)
+
+
+def test_bad_input(ax):
+    with pytest.raises(ValueError, match=r"as many points as there are abscissae.*\(50,\) and"):
+        plot.time_series(ax, TS, np.ones((TS.size, 2)))
+    with pytest.raises(ValueError, match="`energies` must be some numbers ≥ 0"):
+        plot.energy_levels(ax, pendax.Pendulum(), [-1.0])
+    with pytest.raises(ValueError, match="`name` must be one of below, above"):
+        plot.colour_of("blue")
 
 
 def test_values_and_curves_differ(ax):

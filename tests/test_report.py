@@ -8,9 +8,21 @@ import pytest
 import pendax.report
 from pendax.cli import main
 from pendax.figures import FIGURES
-from pendax.report import CLAIMS, ERRATA, Check, Claim, Erratum, Proof, ids, report, verdict
+from pendax.report import (
+    CLAIMS,
+    ERRATA,
+    SECTIONS,
+    Check,
+    Claim,
+    Erratum,
+    Proof,
+    ids,
+    report,
+    verdict,
+)
 
 BY_ID = {erratum.id: erratum for erratum in ERRATA}
+PROVED = dict.fromkeys(BY_ID, True)  # that they are is tested below
 
 
 @pytest.fixture(scope="module")
@@ -64,7 +76,7 @@ def test_what_is_wrong_by_other_reckoning_is_wrong_here(shared, checks):
 
 
 def test_every_claim_is_reproduced_or_explained(checks):
-    words = [verdict(c, check, BY_ID).word for c, check in zip(CLAIMS, checks, strict=True)]
+    words = [verdict(c, check, BY_ID, PROVED).word for c, check in zip(CLAIMS, checks, strict=True)]
     assert set(words) == {"reproduced", "corrected", "misprint"}
     for claim in CLAIMS:
         assert set(claim.errata) <= set(BY_ID), claim
@@ -80,11 +92,16 @@ def test_a_claim_that_is_perturbed_changes_its_verdict(checks, i):
         for moved in (claimed + step, claimed - step):
             changed = check._replace(claimed=moved)
             assert not changed.agrees().any()
-            assert verdict(claim, changed, BY_ID).word != "reproduced"
+            assert verdict(claim, changed, BY_ID, PROVED).word != "reproduced"
     else:
         assert claim.errata
+        if check.corrected is not None:
+            spoilt = check._replace(found=np.asarray(check.found) + 1)
+            assert verdict(claim, spoilt, BY_ID, PROVED).word == "unexplained"
+        unproved = PROVED | dict.fromkeys(claim.errata, False)
+        assert verdict(claim, check, BY_ID, unproved).word == "unexplained"
         right = check._replace(claimed=check.found)
-        assert verdict(claim, right, BY_ID).word == "reproduced"
+        assert verdict(claim, right, BY_ID, PROVED).word == "reproduced"
 
 
 def test_misprints_are_proved(proofs):
@@ -99,44 +116,52 @@ def test_misprints_are_proved(proofs):
 
 
 def test_verdicts():
-    errata = {
-        kind: Erratum(kind, kind, "", "", "", None) for kind in ("formula", "statement", "text")
-    }
+    kinds = ("formula", "statement", "text")
+    errata = {kind: Erratum(kind, kind, "", "", "", None) for kind in kinds}
 
-    def word(claimed, *cited):
+    def word(claimed, *cited, corrected=None, proved=True):
         claim = Claim("1", "", "", lambda: check, errata=cited)
-        check = Check(claimed, [1.0, 2.0], 0.1)
-        return verdict(claim, check, errata)
+        check = Check(claimed, [1.0, 2.0], 0.1, corrected)
+        return verdict(claim, check, errata, dict.fromkeys(kinds, proved))
 
     assert word([1.05, 2.0], "formula")[:3] == ("reproduced", 2, 2)
     assert word([1.05, 2.0]).digits == pytest.approx(np.log10(2 / 0.05))
     assert word([1.05, 3.0], "statement")[:3] == ("corrected", 1, 2)
     assert word([1.05, 3.0], "text").word == "misprint"
     assert word([np.nan, 2.0]).word == "unexplained"
+    assert word([1.05, 3.0], "statement", proved=False).word == "unexplained"
+    assert word([1.05, 3.0], "statement", corrected=[1.0, 2.05]).word == "corrected"
+    assert word([1.05, 3.0], "statement", corrected=[1.0, 2.5]).word == "unexplained"
     assert Proof(1.0, 2.0, 2.0, 0.1).holds()
     assert not Proof([1.0, 2.0], 2.0, 2.0, 0.1).holds()
 
 
 def test_markdown(checks):
-    some = [claim for claim in CLAIMS if claim.id in ("1.2 Fig 2", "7.2a", "2.8 Fig10", "9")]
+    some = [claim for claim in CLAIMS if claim.id in ("1.2 Fig 2", "7.2a", "2.8 Fig10")]
     cited = [e for e in ERRATA if any(e.id in c.errata for c in some)] + [BY_ID["S2-42"]]
     heard = []
-    text = report(some, cited, lambda n: "2.png" if n == "2" else None, heard.append)
+    sections = {"One": some[:2], "Two": some[2:]}
+    text = report(sections, cited, lambda n: "2.png" if n == "2" else None, heard.append)
     rows = [line for line in text.splitlines() if line.startswith("| ")]
-    assert all(len(re.findall(r"(?<!\\)\|", row)) == 9 for row in rows)
+    assert {len(re.findall(r"(?<!\\)\|", row)) for row in rows} == {9, 10}
     for claim in some:
         assert any(row.startswith(f"| {claim.id} | {claim.says} |") for row in rows)
+    assert text.index("## One") < text.index("## Two") < text.index("## Misprints")
     assert "[2](2.png)" in text
-    assert heard == [*(claim.id for claim in some), *(e.id for e in cited)]
+    assert heard == [*(e.id for e in cited), *(claim.id for claim in some)]
     assert "**no**" not in text
     for anchor in re.findall(r"\(#([^)]+)\)", text):
         assert f'<a id="{anchor}"></a>' in text
     assert "corrected (9 of 10 hold); [S2-21](#s2-21)" in text
 
 
+def test_sections_hold_every_claim_once():
+    assert sum(map(len, SECTIONS.values())) == len(CLAIMS) == len(set(map(id, CLAIMS)))
+
+
 def test_command(tmp_path, capsys, monkeypatch):
     some = [claim for claim in CLAIMS if claim.id == "2.8 Fig10"]
-    monkeypatch.setattr(pendax.report, "CLAIMS", tuple(some))
+    monkeypatch.setattr(pendax.report, "SECTIONS", {"Ten": some})
     monkeypatch.setattr(pendax.report, "ERRATA", (BY_ID["S2-7"],))
     (tmp_path / "figure-10.png").write_bytes(b"")
     assert main(["report", "--out", str(tmp_path)]) == 0

@@ -3,6 +3,7 @@
 import argparse
 from pathlib import Path
 
+from ._error import UserError
 from ._figures import draw
 from ._output import output_folder
 
@@ -27,15 +28,20 @@ def run(arguments: argparse.Namespace) -> None:
 
     jax.config.update("jax_enable_x64", True)
     from ..figures import FIGURES
-    from ..report import CLAIMS, ERRATA, report
+    from ..report import CLAIMS, ERRATA, SECTIONS, report
 
+    if (arguments.out / "report.md").is_dir():
+        raise UserError(f"{arguments.out / 'report.md'}: expected no folder in place of a file")
     with output_folder(arguments.out) as folder:
         if arguments.figures:
             draw(list(FIGURES), folder, "light", ["png"], arguments.quiet)
 
         def link(name: str) -> str | None:
-            file = f"figure-{name}.png"
-            return file if any((f / file).exists() for f in (folder, arguments.out)) else None
+            for form in ("png", "svg"):
+                file = f"figure-{name}.{form}"
+                if any((place / file).exists() for place in (folder, arguments.out)):
+                    return file
+            return None
 
         hidden = True if arguments.quiet else None  # None: hidden unless on a terminal
         total = len(CLAIMS) + len(ERRATA)
@@ -45,8 +51,8 @@ def run(arguments: argparse.Namespace) -> None:
                 bar.set_postfix_str(name, refresh=False)
                 bar.update()
 
-            text = report(CLAIMS, ERRATA, link, tell)
+            text = report(SECTIONS, ERRATA, link, tell)
         (folder / "report.md").write_text(text, encoding="utf-8")
     if not arguments.quiet:
-        print(text.split("\n")[4])
+        print(text.split("\n")[2])
         print(f"wrote {arguments.out / 'report.md'}")

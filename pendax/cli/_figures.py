@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 SUMMARY = "every figure of the sources, and two films"
 DESCRIPTION = """\
 Draw the figures of the two sources with their parameters, each by its number there, as PNG and
-SVG, and two animations as GIF.  --list names them; --only 5a 13 draws those; a number without a
-letter draws all its panels.  Figures of unnumbered parts are named after their section (5.2a,
+SVG, and two animations as GIF.  --list names them; --only 5a 13 draws those; 5, no figure by
+itself, draws all its panels.  Figures of unnumbered parts are named after their section (5.2a,
 8.2.3j), chapter (ch6a) or appendix (B, D, E, G, H), those of the Spanish source es…"""
 
 _FORMATS = ("png", "svg")
@@ -44,7 +44,7 @@ def run(arguments: argparse.Namespace) -> None:
     with output_folder(arguments.out) as folder:
         files = draw(names, folder, arguments.look, arguments.format, arguments.quiet)
     if not arguments.quiet:
-        print(f"{len(names)} figures, {len(files)} files, in {arguments.out}")
+        print(f"drew {', '.join(names)}: {len(files)} files in {arguments.out}")
 
 
 def draw(
@@ -80,14 +80,20 @@ def _chosen(only: list[str] | None, names: list[str]) -> list[str]:
     """The names asked for, in the catalogue's order."""
     if only is None:
         return names
-    found = set()
+    found, unknown = set(), []
+    by_small = {name.lower(): name for name in names}
     for asked in only:
-        panels = [n for n in names if n == asked or (n[:-1] == asked and n[-1].islower())]
+        small = asked.lower()
+        panels = [n for n in names if n[:-1] == asked and n[-1].islower()]
         # A panel of a figure that is drawn whole, 8a, is found in the whole.
-        panels = panels or [n for n in names if n == asked[:-1] and asked[-1:] in "abc"]
-        if not panels:
-            near = difflib.get_close_matches(asked, names, 3, 0.3)
-            hint = f"; did you mean {', '.join(near)}?" if near else ""
-            raise UserError(f"--only: there is no figure {asked!r}{hint} (--list names them all)")
-        found.update(panels)
+        whole = by_small.get(small) or (small[-1:] in "abc" and by_small.get(small[:-1]))
+        if whole:
+            found.add(whole)
+        elif panels:
+            found.update(panels)
+        else:
+            near = difflib.get_close_matches(asked, names, 3, 0.4)
+            unknown.append(repr(asked) + (f" ({' or '.join(near)}?)" if near else ""))
+    if unknown:
+        raise UserError(f"--only: no figure {', '.join(unknown)}; --list names them all")
     return [name for name in names if name in found]

@@ -109,7 +109,11 @@ def _retrapping() -> Scene:
                        textcoords="offset points")  # fmt: skip
     right.set(xlabel=r"torque $\tau$ / s$^{-2}$", ylabel=r"angular velocity $v$ / rad s$^{-1}$")
     right.set(xlim=(0, 1.2), ylim=(1.1 * v.min() - 0.1, 1.25 * v.max()))
-    figure.suptitle(r"Escape and retrapping, $\beta=0.4$ s$^{-1}$: a junction's hysteresis")
+    figure.suptitle(
+        rf"$\tau$ up to 1.15 s$^{{-2}}$ in {rise:g} s and back in {end - rise:g} s, "
+        rf"$\beta={beta}$ s$^{{-1}}$, $\varepsilon=1$ s$^{{-2}}$",
+        fontsize=11,
+    )
     frames = np.linspace(0, ts.size - 1, count).astype(int)
 
     def draw(n: int) -> None:

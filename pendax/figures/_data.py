@@ -6,7 +6,7 @@ import numpy as np
 from .._pendulum import Pendulum
 from .._simulate import simulate
 
-TIMES = 1001
+TIMES = 2001
 _LANES = 12
 
 

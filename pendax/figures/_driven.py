@@ -43,13 +43,16 @@ def _near_the_change() -> Figure:
 
 
 def _map() -> Figure:
-    tau, v0 = np.linspace(-0.05, 0.45, 161), np.linspace(0, 3.5, 141)
+    tau, v0 = np.linspace(-0.05, 0.45, 301), np.linspace(1.4, 3.5, 211)
     pendulum = Pendulum(1.0, _BETA, jnp.asarray(tau))
     ends = settle(pendulum, jnp.asarray(v0)[:, None])
     figure = new_figure(7.6, 4.8)
     ax = fate_map(figure.subplots(), tau, v0, ends)
-    for start in _STARTS:
+    for letter, start in zip("abcdefghij", _STARTS, strict=True):
         ax.plot([0.01, 0.4], [start, start], color=colour_of("above"), lw=0.6)
+        near = letter in "bd"  # two columns: the first four are close
+        ax.annotate(f"({letter})", (0.4, start), xytext=(14 if near else 2, 0), fontsize=7,
+                    textcoords="offset points", va="center", color=colour_of("above"))  # fmt: skip
     ax.set(xlabel=r"torque $\tau$ / s$^{-2}$", ylabel=r"$v_0$ / rad s$^{-1}$")
     return figure
 

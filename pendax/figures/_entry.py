@@ -25,6 +25,8 @@ class Entry(NamedTuple):
         name = self.name
         if name.startswith("es"):
             return f"Spanish source §{name[2:]}"
+        if name.startswith("8.2.3"):
+            return "§ 8.2.3"  # the source has two (e); v0 tells the panels apart
         if name.startswith("ch"):
             return f"Chapter {name[2:-1]}({name[-1]})"
         where = "Appendix" if name in "BDEGH" else "§" if "." in name else "Figure"

@@ -33,22 +33,23 @@ _FAMILIES: tuple[tuple[str, str, float, list[float]], ...] = (
     ("5.2j", "turning over", 40.0, [2.1, 2.12, 2.14, 2.16, 2.18, 2.2]),
     ("E", "within 1e-5 of the separatrix", 100.0,
      [float(x) for x in np.round(1.999992 + np.arange(8) * 1e-6, 6)]),
-    ("G", "the one curve through the origin among those of the contour plot", 30.0, [2.1]),
+    ("G", "the curve through the origin", 30.0, [2.1]),
 )  # fmt: skip
 
 
-def _family(end: float, v0: list[float], branches: bool) -> Figure:
+def _family(end: float, v0: list[float], branches: bool, to_twenty_pi: bool = False) -> Figure:
     figure = new_figure(7.2, 4.2)
     ax = figure.subplots()
     ts, theta, _ = swings(v0, end)
     if branches:  # all of sin(θ/2) = sn(t/κ): what a contour plot of it shows
         faint = {"color": colour_of("separatrix"), "lw": 0.6, "alpha": 0.6}
         for n in range(-8, 12):
-            ax.plot(ts, theta[0] + 4 * np.pi * n, **faint)
+            label = "other branches" if n == -8 else None
+            ax.plot(ts, theta[0] + 4 * np.pi * n, label=label, **faint)
             ax.plot(ts, 2 * np.pi * (2 * n + 1) - theta[0], **faint)
     time_series(ax, ts, theta, v0, name=V0)
     if branches:
-        ax.set_ylim(-0.5, min(20 * np.pi, 1.2 * theta.max()))
+        ax.set_ylim(-0.5, 20 * np.pi if to_twenty_pi else 1.2 * theta.max())
     return figure
 
 
@@ -73,7 +74,13 @@ def _on_the_separatrix() -> Figure:
 
 def _entry(name: str, about: str, end: float, v0: list[float]) -> Entry:
     branches = name in ("10a", "10b", "10c", "G")
-    return Entry(name, about, lambda: _family(end, v0, branches))
+    about = f"{about}, v0 = {span(v0)}"
+    return Entry(name, about, lambda: _family(end, v0, branches, name == "G"))
+
+
+def span(v0: list[float]) -> str:
+    first, last = (f"{x:.10g}" for x in (v0[0], v0[-1]))
+    return first if len(v0) == 1 else f"{first} … {last}"
 
 
 MOTION = (

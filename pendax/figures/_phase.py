@@ -7,7 +7,7 @@ from .._pendulum import Pendulum
 from ..plot import new_figure, phase_portrait, separatrix
 from ._data import swings
 from ._entry import Entry
-from ._motion import V0
+from ._motion import V0, span
 
 _FAMILIES: tuple[tuple[str, str, float, list[float]], ...] = (
     ("7a", "closed orbits", 12.0, [1.8, 1.85, 1.9, 1.95]),
@@ -34,7 +34,7 @@ def _orbits(end: float, v0: list[float]) -> Figure:
 
 
 def _entry(name: str, about: str, end: float, v0: list[float]) -> Entry:
-    return Entry(name, about, lambda: _orbits(end, v0))
+    return Entry(name, f"{about}, v0 = {span(v0)}", lambda: _orbits(end, v0))
 
 
 PHASE = tuple(_entry(*row) for row in _FAMILIES)

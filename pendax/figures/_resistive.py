@@ -83,7 +83,7 @@ def _manifold(ax, pendulum: Pendulum, saddle: float, root: float) -> None:
 
 RESISTIVE = (
     Entry("7.1", "spirals and saddles, β = 0.2 1/s, ε = 1 1/s²", _fixed_points),
-    Entry("7.2a", "angle, v0 = 2.3 rad/s, ε = 1 1/s²", _angles),
-    Entry("7.2b", "velocity, v0 = 2.3 rad/s, ε = 1 1/s²", _velocities),
-    Entry("7.2c", "orbits, v0 = 2.3 rad/s, ε = 1 1/s²", _orbits),
+    Entry("7.2a", "θ(t), v0 = 2.3 rad/s, ε = 1 1/s²", _angles),
+    Entry("7.2b", "v(t), v0 = 2.3 rad/s, ε = 1 1/s²", _velocities),
+    Entry("7.2c", "orbits for 150 s, v0 = 2.3 rad/s, ε = 1 1/s²", _orbits),
 )

@@ -6,6 +6,7 @@ from matplotlib.patches import Arc, Circle
 
 from .._geometry import geometry
 from .._pendulum import Pendulum
+from ._lines import legend_beside
 from ._style import colour_of
 
 _OFFSETS = {
@@ -68,7 +69,7 @@ def construction(ax: Axes, pendulum: Pendulum, theta: float, v: float) -> Axes:
     wide = max(1.2, 0.5 * height + 0.1)
     ax.set(xlim=(-wide, wide), ylim=(-1.2, max(1.2, height - 0.85)))
     ax.axis("off")
-    ax.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
+    legend_beside(ax)
     return ax
 
 

@@ -4,6 +4,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.cm import ScalarMappable
 from matplotlib.colors import ListedColormap, Normalize
+from matplotlib.layout_engine import ConstrainedLayoutEngine
 from numpy.typing import ArrayLike
 
 from ._style import shades
@@ -21,8 +22,13 @@ def family(
     """Rows of `y` over those of `x` (or over `x`), dark to light in the order given."""
     count = None if values is None else np.shape(values)
     values = None if values is None else np.asarray(values, float)
-    y = np.atleast_2d(np.asarray(y))
-    x = np.broadcast_to(np.asarray(x), y.shape)
+    y, x = np.atleast_2d(np.asarray(y)), np.asarray(x)
+    if x.size == 0 or x.shape not in (y.shape[-1:], y.shape):
+        raise ValueError(
+            "Curves must have as many points as there are abscissae, one or more, but got shapes "
+            f"{x.shape} and {y.shape}."
+        )
+    x = np.broadcast_to(x, y.shape)
     if y.ndim != 2 or (count is not None and count != y.shape[:1]):
         raise ValueError(
             f"Curves must be one, or rows with one of the `values` each, but got curves of shape "
@@ -40,4 +46,14 @@ def family(
         mappable = ScalarMappable(span, ListedColormap(shades(256)))
         ax.figure.colorbar(mappable, ax=ax, label=name)
     else:
-        ax.legend(title=name, loc="center left", bbox_to_anchor=(1.0, 0.5))
+        legend_beside(ax, name)
+
+
+def legend_beside(ax: Axes, title: str | None = None) -> None:
+    """To the right of the axes where the figure's layout makes room for it, else inside."""
+    figure = ax.get_figure(root=True)
+    engine = figure.get_layout_engine() if figure else None
+    if isinstance(engine, ConstrainedLayoutEngine):
+        ax.legend(title=title, loc="center left", bbox_to_anchor=(1.0, 0.5))
+    else:
+        ax.legend(title=title, loc="best")

@@ -17,7 +17,8 @@ def potential_energy(
     *,
     over: tuple[float, float] = (-2 * np.pi, 2 * np.pi),
 ) -> Axes:
-    """U(θ)/ε over the angles `over`, rad, and levels of the energies E/ε where E ≥ U."""
+    """U(θ)/ε = 1 − cos θ over the angles `over`, rad, and levels of the energies E/ε where
+    E ≥ U; the torque, which does work on its way, is not in U."""
     epsilon = float(pendulum.epsilon)
     theta = np.linspace(*over, 4001)
     u = np.asarray(potential(pendulum, theta), float) / epsilon

@@ -66,6 +66,8 @@ def style(look: Look = "light") -> AbstractContextManager[None]:
 def colour_of(name: str) -> str:
     """The colour of a thing ("below" or "above" the separatrix, "law", "next", "separatrix",
     "data"), to be seen on the axes' ground of the style in force."""
+    if name not in COLOURS:
+        raise ValueError(f"Argument `name` must be one of {', '.join(COLOURS)}, but got {name!r}.")
     dark = sum(to_rgb(mpl.rcParams["axes.facecolor"])) < 1.5
     return (DARK_COLOURS if dark else COLOURS)[name]
 

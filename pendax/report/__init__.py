@@ -22,9 +22,17 @@ from ._spanish import CLAIMS as SPANISH
 from ._spanish_notes import CLAIMS as NOTES
 from ._swinging import CLAIMS as SWINGING
 
-# In the order of the sources.
-CLAIMS: tuple[Claim, ...] = (
-    *FORMULATION, *SWINGING, *ROTATING, *GEOMETRY, *NUMERICAL, *RESISTIVE, *DRIVEN, *APPENDIX,
-    *SPANISH, *NOTES,
-)  # fmt: skip
+SECTIONS: dict[str, tuple[Claim, ...]] = {
+    "S2, chapters 1 and 2: formulation": FORMULATION,
+    "S2, chapter 2: swinging": SWINGING,
+    "S2, chapter 3: turning over": ROTATING,
+    "S2, chapter 4: geometry": GEOMETRY,
+    "S2, chapters 5, 6 and 9: by a solver, and Fourier's way": NUMERICAL,
+    "S2, chapter 7: resistance": RESISTIVE,
+    "S2, chapter 8: a constant torque, and the Josephson junction": DRIVEN,
+    "S2, appendices": APPENDIX,
+    "S0, sections 1 to 4": SPANISH,
+    "S0, section 5": NOTES,
+}
+CLAIMS: tuple[Claim, ...] = tuple(claim for claims in SECTIONS.values() for claim in claims)
 ERRATA: tuple[Erratum, ...] = (*FORMULAS, *STATEMENTS, *SPANISH_ERRATA, *TEXT)

@@ -104,9 +104,22 @@ def solver_error(v0, end):
 
 
 def solved_period(v0: Numbers, guess, turn: Numbers = 0.0, epsilon: Numbers = 1.0):
-    """The time near `guess` at which the solver's motion passes θ = `turn`."""
-    theta, v = solved(v0, np.asarray(guess)[:, None], 0.0, epsilon)
-    return guess - (theta[:, 0] - turn) / v[:, 0]
+    """The first time after the start at which the solver's motion passes θ = `turn` upwards as it
+    does at the start; NaN if that is not within 1¼ of `guess`, which is used for nothing else."""
+    turn = np.broadcast_to(turn, np.shape(guess))[:, None]
+    high = 1.25 * np.asarray(guess, float)[:, None]
+    low, rows = 0 * high, np.arange(high.size)[:, None]
+    for _ in range(3):  # each pass narrows it to a 60th
+        ts = low + (high - low) * np.linspace(0, 1, TIMES)
+        theta = solved(v0, ts, 0.0, epsilon)[0]
+        passes = (theta[:, :-1] < turn) & (theta[:, 1:] >= turn)
+        first, found = np.argmax(passes, -1)[:, None], np.any(passes, -1, keepdims=True)
+        grain = 0.01 * (ts[:, 1:2] - ts[:, :1])
+        low = np.where(found, ts[rows, first] - grain, np.nan)
+        high = np.where(found, ts[rows, first + 1] + grain, np.nan)  # not at the crossing itself
+    at = np.where(np.isnan(high), 0.0, high)
+    theta, v = solved(v0, at, 0.0, epsilon)
+    return np.where(np.isnan(high), np.nan, high - (theta - turn) / v)[:, 0]
 
 
 def integral(integrand: Callable, upper) -> np.ndarray:

@@ -48,7 +48,7 @@ def _newton() -> Check:
 def _string() -> Check:
     v0 = np.array([1.0, 2.01, 2.1, 2.2])
     theta, v = motion(v0[:, None], np.linspace(0, 12, 241))
-    return Check(np.ones(4), np.all(_tension(theta, v) >= 0, -1), 0)
+    return Check(np.ones(4), np.all(_tension(theta, v) >= 0, -1), 0, v0 < np.sqrt(2))
 
 
 _SMALL = np.array([0.05, 0.1, 0.2])
@@ -86,9 +86,12 @@ def _phases() -> Check:
     a1, _, a3, _, a5 = lines(v0, omega)[0, :5]
     # a cosine series: a quarter of a period later
     later = (phase + delta + 0.5 * np.pi) / omega
-    claimed = a1 * np.cos(phase + delta) - a3 * np.cos(3 * phase + delta)
-    claimed = claimed + a5 * np.cos(5 * phase + delta)
-    return Check(claimed, motion(v0, later)[0], 1e-3)  # α7 is 3e-4
+
+    def series(n):  # α_n cos(nωt + its phase), of the printed phase and of the right one
+        return np.stack([np.cos(n * phase + delta), np.cos(n * (phase + delta))])
+
+    claimed, right = a1 * series(1) - a3 * series(3) + a5 * series(5)
+    return Check(claimed, motion(v0, later)[0], 1e-3, right)  # α7 is 3e-4
 
 
 def _harmonic() -> Check:
@@ -117,8 +120,14 @@ def _energy() -> Check:
 
 
 def _turning() -> Check:
-    levels = np.array([0.5, 1.0, 1.5])  # E/ε; the lines above 2 do not meet U
+    levels = np.array([0.5, 1.0, 1.5, 2.0])
     return Check(np.arccos(1 - levels), amplitude(np.sqrt(2 * levels)), 1e-14)
+
+
+def _above() -> Check:
+    levels = np.array([2.5, 3.0])
+    v0 = np.sqrt(2 * levels)
+    return Check(levels - 2, 0.5 * motion(v0, arrival(np.pi, v0))[1] ** 2, 1e-13)
 
 
 def _separatrices() -> Check:
@@ -143,10 +152,11 @@ def _barrier() -> Check:
 MODULI = np.array([0.3, 0.8, 0.95])
 
 
-def _speed(factor):
+def _speed() -> Check:
     theta, v = solved(2 * MODULI, np.linspace(0, 20, 41))
     top = 2 * np.arcsin(MODULI)[:, None]
-    return Check(factor * (np.cos(theta) - np.cos(top)), v * v, 1e-9)
+    printed = np.cos(theta) - np.cos(top)
+    return Check(printed, v * v, 1e-9, 2 * printed)
 
 
 def _half_angle_speed() -> Check:
@@ -166,10 +176,14 @@ def _first_integral() -> Check:
 _U = np.linspace(0.1, 9.1, 19)
 
 
-def _root(of_cn: bool) -> Check:
-    m = MODULI[:, None] ** 2
-    sn, cn, dn, _ = jacobi(_U, m)
-    return Check(np.sqrt(1 - (1 if of_cn else m) * sn**2), cn if of_cn else dn, 1e-12)
+def roots(of_cn: bool, m) -> Check:
+    """cn or dn of the parameters `m` by sn, and as they are; the sign of cn by am."""
+    sn, cn, dn, am = jacobi(_U, m)
+    if not of_cn:
+        return Check(np.sqrt(1 - m * sn**2), dn, 1e-12)
+    root = np.sqrt(1 - sn**2)
+    return Check(root, cn, 1e-12, np.where(np.abs(np.mod(am, 2 * np.pi) - np.pi) < np.pi / 2,
+                                           -root, root))  # fmt: skip
 
 
 def _derivatives() -> Check:
@@ -181,42 +195,50 @@ def _derivatives() -> Check:
 
 CLAIMS = (
     Claim("1.1a", "I θ̈ = −mgl sin θ, or θ̈ + ε sin θ = 0 with ε = g/l",
-          "θ̈, rad/s², torque over m l² / of the motion", _newton, ("1",)),
-    Claim("1.1a", "The bob hangs on a string (in all that follows)",
-          "1 if a string stays tight; v0 = 1, 2.01, 2.1, 2.2", _string, ("1",), ("S2-20",)),
+          "θ̈, rad/s², torque over m l² / of the motion, m = 0.1, 2, l = 0.5, 1.3, t = 0 … 3",
+          _newton, ("1",)),
+    Claim("1.1a", "The bob is suspended from a string (read with the v0 of §3, 4.3, 5, 7 and 8)",
+          "1 if a string stays tight, v0 = 1, 2.01, 2.1, 2.2", _string, ("1",), ("S2-20",)),
     Claim("1.1b", "ω² = ω0² (1 − α1²/8)", "ω, rad/s, v0 = 0.05, 0.1, 0.2", _small_frequency),
     Claim("1.1b", "T = T0 (1 + α²/16)", "T, s, v0 = 0.05, 0.1, 0.2", _small_period,
           errata=("S2-2",)),
     Claim("1.1b", "α3 ≈ −α1³/192 (cosine series)",
-          "α3, rad, of swings from rest", _third, errata=("S2-2",)),
+          "α3, rad, of swings from rest, with the energy of v0 = 0.05, 0.1, 0.2", _third,
+          errata=("S2-2",)),
     Claim("1.1b", "θ = α1 cos(ωt + δ) + α3 cos(3ωt + δ) + α5 cos(5ωt + δ) + …",
-          "θ, rad, δ = 0.5, v0 = 1.6", _phases, errata=("S2-1",)),
+          "θ, rad, δ = 0.5, v0 = 1.6, ωt = 0 … 6", _phases, errata=("S2-1",)),
     Claim("1.1b", "In the limit θ → 0 the motion is θ = α1 cos(ω0 t + δ)",
-          "θ(t), rad, from rest at 1e-3 rad", _harmonic),
+          "θ(t), rad, from rest at 1e-3 rad, t = 0 … 20", _harmonic),
     Claim("1.2 Fig 2", "½v² + ε(1 − cos θ) is constant, and U = ε(1 − cos θ)",
-          "U/ε, formula / kinetic energy lost", _work, ("2",)),
+          "U/ε, formula / kinetic energy lost, v0 = 0.5, 1.5, 1.9, 2.5, t = 0 … 20", _work, ("2",)),
     Claim("1.2 Fig 2", "U ≈ ε(θ²/2 − θ⁴/24 + θ⁶/720 − θ⁸/40320)",
           "U/ε, |θ| ≤ 1.5", _taylor, ("2",)),
     Claim("1.2 Fig 2", "E = ½v0² + ε(1 − cos θ0) of a start (θ0, v0)",
-          "E, 1/s², of the start / along the motion", _energy),
+          "E, 1/s², of the start / along the motion, θ0 = −0.7, −1.5, v0 = 0.5 … 1.5, t = 0 … 10",
+          _energy),
     Claim("1.2 Fig 2", "Lines of constant energy E/ε = 0.5 … 3.0 over U",
-          "θ where E/ε = 0.5, 1, 1.5 meet U, rad / largest angle", _turning, ("2",)),
+          "θ where E/ε = 0.5, 1, 1.5, 2 meet U, rad / largest angle", _turning, ("2",)),
+    Claim("1.2 Fig 2", "Those of E/ε = 2.5 and 3.0 are above U everywhere",
+          "E/ε − 2 / ½v²/ε at θ = π", _above, ("2",)),
     Claim("1.3a Fig 3", "E = 2ε, ε varied: curves that separate inside from outside",
-          "v, rad/s, of the curve / of the motion from v0 = 2√ε", _separatrices, ("3",)),
+          "v, rad/s, of the curve / of the motion from 2√ε, ε = 0.25, 1, 4, t = 0 … 4",
+          _separatrices, ("3",)),
     Claim("1.3b Fig 4", "Trajectories ½v² + ε(1 − cos θ) = E for E = 0.5, 1.0 … 3.5",
-          "v², (rad/s)², of the curve / of the motion", _levels, ("4",)),
+          "v², (rad/s)², of the curve / of the motion, t = 0 … 8", _levels, ("4",)),
     Claim("1.3b Fig 4", "E = 2ε is the highest energy of the potential",
           "largest U, 1/s², ε = 0.5, 1, 3", _barrier, ("4",)),
-    Claim("2.1-2.2", "v² = ε(cos θ − cos θ_max)", "v², (rad/s)²", lambda: _speed(1.0),
+    Claim("2.1-2.2", "v² = ε(cos θ − cos θ_max)",
+          "v², (rad/s)², formula / solver, k = 0.3, 0.8, 0.95, t = 0 … 20", _speed,
           errata=("S2-3",)),
     Claim("2.1-2.2", "(1): θ̇ = 2√ε √(sin²(θ_max/2) − sin²(θ/2))",
-          "v², (rad/s)², formula / solver", _half_angle_speed),
+          "v², (rad/s)², formula / solver, k = 0.3, 0.8, 0.95, t = 0 … 20", _half_angle_speed),
     Claim("2.1-2.2", "(2)–(4): √ε t = ∫dξ/(√(1 − ξ²) √(1 − k²ξ²)) up to sin(θ/2)/k",
-          "t, s, quadrature / arrival at θ", _first_integral),
-    Claim("2.1-2.2", "cn(u) = √(1 − sn²(u))", "cn, u = 0.1 … 9.1", lambda: _root(True),
+          "t, s, quadrature / arrival at θ, k = 0.3, 0.8, 0.95", _first_integral),
+    Claim("2.1-2.2", "cn(u) = √(1 − sn²(u))", "cn, u = 0.1 … 9.1, k = 0.3, 0.8, 0.95",
+          lambda: roots(True, MODULI[:, None] ** 2),
           errata=("S2-5",)),
-    Claim("2.1-2.2", "cos(θ/2) = √(1 − k² sn²(u)) = dn(u)", "dn, u = 0.1 … 9.1",
-          lambda: _root(False)),
+    Claim("2.1-2.2", "cos(θ/2) = √(1 − k² sn²(u)) = dn(u)", "dn, u = 0.1 … 9.1, k = 0.3, 0.8, 0.95",
+          lambda: roots(False, MODULI[:, None] ** 2)),
     Claim("2.1-2.2", "sn′ = cn dn, cn′ = −sn dn, dn′ = −k² sn cn",
-          "derivatives / differences", _derivatives),
+          "derivatives / differences, u = 0.1 … 9.1, k = 0.3, 0.8, 0.95", _derivatives),
 )  # fmt: skip

@@ -89,7 +89,8 @@ def _critical_angles() -> Check:
 def _at_e() -> Check:
     points, _, u = _critical()
     points["O"] = 0 * points["A"]
-    return Check(jacobi(u, 1.0)[3] / 2, _angle(points, "OEP"), 1e-13)
+    phi = jacobi(u, 1.0)[3]
+    return Check(phi / 2, _angle(points, "OEP"), 1e-13, phi)
 
 
 _LENGTH, _ROTATING = 1.3, 2 / 0.9  # of the rod; v0 = 2√ε/κ of Fig. 18
@@ -120,25 +121,31 @@ def _top_speed() -> Check:
 
 def _free_fall(factor) -> Check:
     points, _, up = _rotation()
-    return Check(factor * (_LENGTH * up) ** 2 / _LENGTH, _LENGTH * _between(points, "DE"), 1e-13)
+    square = (_LENGTH * up) ** 2 / _LENGTH
+    return Check(factor * square, _LENGTH * _between(points, "DE"), 1e-13, square / 2)
 
 
 def _printed_argument() -> Check:
-    return Check(jacobi(_rotation()[1], 0.9**2)[0], np.sin(np.radians([35.0])), 1e-13)
+    epsilon, u = 4.0, _rotation()[1]
+    t = u / np.sqrt(epsilon)
+    printed, right = (jacobi(x, 0.9**2)[0] for x in (np.sqrt(epsilon * t), u / 0.9))
+    return Check(printed, np.sin(np.radians([35.0])), 1e-13, right)
 
 
 CLAIMS = (
     Claim("4.1 Fig15,16", "AB = 2lk, AD = 2lk², EP = 2l dn, AP = 2lk sn, AN, ND, EN, NP, AQ, NQ …",
-          "lengths over l, formula / between points, θ_max = 120°, 150°", _swing_lengths,
+          "lengths over l, formula / between points, θ_max = 120°, 150°, θ = 70°", _swing_lengths,
           ("15", "16")),
     Claim("4.1 Fig15,16", "∠AEB = ∠ABD = θ_max/2, ∠AEP = ∠APN = θ/2, ∠ADQ = ∠AQN = φ …",
-          "angles, rad, by am / between points", _swing_angles, ("15", "16")),
+          "angles, rad, by am / between points, θ_max = 120°, 150°, θ = 70°", _swing_angles,
+          ("15", "16")),
     Claim("4.1 Fig15,16", "k = AD/AB = AB/AE, EN/NP = NP/AN, DN/NQ = NQ/AN, sin(θ/2) = k sin φ",
-          "ratios", _similar, ("15", "16")),
+          "ratios, formula / between points, θ_max = 120°, 150°, θ = 70°", _similar, ("15", "16")),
     Claim("4.2 Fig17", "k = 1: sin(θ/2) = tanh u, cn = sech u, AP = 2l tanh u, AN, NP",
           "sin, cos and lengths over l, θ = 50°", _critical_lengths, ("17",)),
-    Claim("4.2 Fig17", "k = 1: θ/2 = φ, ∠APN = φ", "angles, rad", _critical_angles, ("17",)),
-    Claim("4.2 Fig17", "∠OEP = φ/2", "∠OEP, rad", _at_e, ("17",), ("S2-12",)),
+    Claim("4.2 Fig17", "k = 1: θ/2 = φ, ∠APN = φ", "angles, rad, θ = 50°", _critical_angles,
+          ("17",)),
+    Claim("4.2 Fig17", "∠OEP = φ/2", "∠OEP, rad, θ = 50°", _at_e, ("17",), ("S2-12",)),
     Claim("4.3 Fig18", "DE = 2l(1/κ² − 1), AD = 2l/κ², AP, EP, AN, EN, DN, NP by sn, cn, dn",
           "lengths over l, formula / between points, κ = 0.90, θ = 70°", _rotation_lengths,
           ("18",)),
@@ -148,6 +155,6 @@ CLAIMS = (
           lambda: _free_fall(0.5), ("18",)),
     Claim("4.3 Fig18", "V_ff²/2g = V_ff²/(εl)", "DE, m, l = 1.3", lambda: _free_fall(1.0),
           ("18",), ("S2-13",)),
-    Claim("4.3 Fig18", "sin(θ/2) = sn(√ε t, κ)", "sin 35°, κ = 0.90", _printed_argument,
+    Claim("4.3 Fig18", "sin(θ/2) = sn(√(εt), κ)", "sin 35°, κ = 0.90, ε = 4", _printed_argument,
           ("18",), ("S2-14",)),
 )  # fmt: skip

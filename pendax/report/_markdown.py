@@ -1,6 +1,6 @@
 """The report as Markdown: a row a claim, a row a misprint."""
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike
@@ -8,62 +8,78 @@ from numpy.typing import ArrayLike
 from ._claim import Check, Claim, Erratum, Proof, Verdict, verdict
 
 _SHOWN = 4  # values of an array that are printed
+_CLAIM_COLUMNS = (
+    "where", "the source says", "compared", "claimed", "found", "digits", "verdict", "figures",
+)  # fmt: skip
+_ERRATUM_COLUMNS = (
+    "", "where", "printed", "correct", "compared", "as printed", "corrected", "truth", "proved",
+)  # fmt: skip
+_PREFACE = (
+    "S2 is M. Suzuki and I. S. Suzuki, *Physics of simple pendulum* (2008), S0 is *Dinámica "
+    "Péndulo Simple «solución exacta»* (2021). An entry is a section or figure: Fig6 is the "
+    "figure of that number, 6a-i those of chapter 6. The numbers under *claimed* and *found*, and "
+    "those beside a misprint, were computed when this file was written.",
+    "",
+    "*Claimed* is what the source prints, or its formula evaluated; *found* comes another way; of "
+    "more than ten values those farthest apart are shown. *Digits*: how many of the largest value "
+    "are the same; it is the source that says how many it means (*around*, *almost*), so few can "
+    "be enough, and where a 0 is claimed there are none. *Corrected*: the statement does not hold; "
+    "*misprint*: the formula does not, as printed; *n of N hold*: for that many of the values "
+    "compared. A claim that is reproduced may still cite a misprint beside it, or a remark.",
+)
+_MISPRINTS = (
+    "Each printed value is wrong, and each corrected one right, beside a truth that comes from "
+    "neither. A *remark* is about what is right as its source uses it, or incomplete: there the "
+    "numbers are of a case that it leaves out.",
+)
 
 
 def report(
-    claims: Sequence[Claim],
+    sections: Mapping[str, Sequence[Claim]],
     errata: Sequence[Erratum],
     link: Callable[[str], str | None],
     progress: Callable[[str], object] = lambda name: None,
 ) -> str:
-    """Both sections.  `link` gives a figure's file, or `None` where there is none; `progress`
-    hears of each id before it is checked."""
+    """Claims section by section, and the misprints.  `link` gives a figure's file, or `None`
+    where there is none; `progress` hears of each id before it is checked."""
     by_id = {erratum.id: erratum for erratum in errata}
-    rows: list[tuple[Claim, Check, Verdict]] = []
-    for claim in claims:
-        progress(claim.id)
-        check = claim.check()
-        rows.append((claim, check, verdict(claim, check, by_id)))
-    proofs: list[tuple[Erratum, Proof | None]] = []
+    proofs: dict[str, Proof] = {}
     for erratum in errata:
         progress(erratum.id)
-        proofs.append((erratum, erratum.proof and erratum.proof()))
-    words = [v.word for _, _, v in rows]
-    counts = ", ".join(f"{words.count(word)} {word}" for word in dict.fromkeys(sorted(words)))
-    proved = sum(proof is not None and proof.holds() for _, proof in proofs)
-    wording = sum(proof is None for _, proof in proofs)
+        if erratum.proof:
+            proofs[erratum.id] = erratum.proof()
+    proved = {name: proof.holds() for name, proof in proofs.items()}
+    tables, words = [], []
+    for title, claims in sections.items():
+        tables += ["", f"## {title}", "", *_head(_CLAIM_COLUMNS)]
+        for claim in claims:
+            progress(claim.id)
+            check = claim.check()
+            found = verdict(claim, check, by_id, proved)
+            words.append(found.word)
+            tables.append(_row(claim, check, found, link))
+    counts = ", ".join(f"{words.count(word)} {word}" for word in sorted(set(words)))
+    entries = ids(claim for claims in sections.values() for claim in claims)
     return "\n".join(
         [
             "# What the sources claim, and what is found",
             "",
-            "S2 is M. Suzuki and I. S. Suzuki, *Physics of simple pendulum* (2008), whose sections "
-            "are given; S0 is *Dinámica Péndulo Simple «solución exacta»* (2021). Every number "
-            "here was computed when this file was written.",
+            f"{len(entries)} entries, {len(words)} claims: {counts}. {len(errata)} misprints and "
+            f"remarks: {sum(proved.values())} proved by numbers, {len(errata) - len(proofs)} of "
+            "wording.",
             "",
-            f"{len({claim.id for claim, _, _ in rows})} entries, {len(rows)} claims: {counts}. "
-            f"{len(proofs)} misprints: {proved} proved by numbers, {wording} of wording.",
+            *_PREFACE,
+            *tables,
             "",
-            "*Claimed* is what the source prints, or its formula evaluated; *found* comes another "
-            "way; of more than ten values those farthest apart are shown. *Digits* are those to "
-            "which the two agree, of the largest value compared. *Corrected*: the statement is "
-            "wrong; *misprint*: it is printed wrong. What is right is below, under the name given.",
+            "## Misprints and remarks",
             "",
-            _line("where", "the source says", "compared", "claimed", "found", "digits",
-                  "verdict", "figures"),
-            _line(*["---"] * 8),
-            *(_row(*row, link) for row in rows),
+            *_MISPRINTS,
             "",
-            "## Misprints",
-            "",
-            "Each printed value is wrong, and each corrected one right, beside a truth that "
-            "comes from neither.",
-            "",
-            _line("", "where", "printed", "correct", "as printed", "corrected", "truth", "proved"),
-            _line(*["---"] * 8),
-            *(_erratum(*row) for row in proofs),
+            *_head(_ERRATUM_COLUMNS),
+            *(_erratum(erratum, proofs.get(erratum.id)) for erratum in errata),
             "",
         ]
-    )  # fmt: skip
+    )
 
 
 def _row(claim: Claim, check: Check, found: Verdict, link: Callable[[str], str | None]) -> str:
@@ -108,12 +124,18 @@ def _erratum(erratum: Erratum, proof: Proof | None) -> str:
     if proof is None:
         values = ["", "", "", "wording"]
     else:
-        shown = [np.ravel(np.broadcast_to(x, np.broadcast_shapes(*map(np.shape, proof))))
-                 for x in proof[:3]]  # fmt: skip
+        shape = np.broadcast_shapes(*(np.shape(x) for x in proof))
+        shown = [np.ravel(np.broadcast_to(x, shape)) for x in proof[:3]]
         values = [_numbers(x[:_SHOWN], x.size > _SHOWN) for x in shown]
-        values.append("yes" if proof.holds() else "**no**")
-    return _line(f'<a id="{erratum.id.lower()}"></a>{erratum.id}', erratum.where, erratum.printed,
-                 erratum.correct, *values)  # fmt: skip
+        yes = "remark" if erratum.kind == "remark" else "yes"
+        values.append(yes if proof.holds() else "**no**")
+    name = f'<a id="{erratum.id.lower()}"></a>{erratum.id}'
+    texts = (erratum.where, erratum.printed, erratum.correct, erratum.compared)
+    return _line(name, *texts, *values)
+
+
+def _head(columns: Sequence[str]) -> tuple[str, str]:
+    return _line(*columns), _line(*["---"] * len(columns))
 
 
 def _numbers(values: ArrayLike, more: bool = False) -> str:
@@ -122,7 +144,9 @@ def _numbers(values: ArrayLike, more: bool = False) -> str:
 
 
 def _number(x: float) -> str:
-    return f"{x:.0f}" if x == np.round(x) and abs(x) < 1e6 else f"{x:.9g}"
+    if x == np.round(x) and abs(x) < 1e6:
+        return f"{x:.0f}"
+    return f"{x:.9g}" if abs(x) >= 1e-12 else f"{x:.1e}"
 
 
 def _line(*cells: str) -> str:

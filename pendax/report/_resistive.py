@@ -65,7 +65,7 @@ _BETA = np.array([0.010, 0.012, 0.014, 0.016, 0.018, 0.020, 0.04, 0.08, 0.12, 0.
 
 def _turns() -> Check:
     _, found, _ = ended(_BETA, 0.0, 2.3)
-    return Check([7, 6, 5, 4, 4, 3, 1, 1, 1, 0], found, 0)
+    return Check([7, 6, 5, 4, 4, 3, 1, 1, 1, 0], found, 0, [7, 6, 5, 4, 4, 3, 2, 1, 1, 0])
 
 
 def _at_rest() -> Check:
@@ -75,7 +75,7 @@ def _at_rest() -> Check:
 
 def _mean() -> Check:
     theta, v = followed(_BETA[6:], 0.0, 2.3, [1500.0, 3000.0])
-    return Check(0.0, np.stack([np.diff(theta)[:, 0] / 1500, v[:, 1]]), 1e-12)
+    return Check(0.0, np.stack([np.diff(theta)[:, 0] / 1500, v[:, 1]]) / 2.3, 1e-12)
 
 
 def _undamped() -> Check:
@@ -86,33 +86,43 @@ def _undamped() -> Check:
 def _farther() -> Check:
     beta = np.arange(1, 11) / 50
     _, well, _ = ended(beta, 0.0, 2.3)
-    return Check(np.ones(9), np.diff(well) <= 0, 0)
+    return Check(np.ones(10), np.append(np.diff(well) <= 0, well[0] > well[-1]), 0)
+
+
+def _terminal() -> Check:
+    theta = followed(np.arange(11) / 50, 0.0, 2.3, [200.0, 300.0])[0]
+    return Check(np.arange(11) == 0, theta[:, 1] - theta[:, 0] > 4 * np.pi, 0)
 
 
 def _spiral_in() -> Check:
     beta = np.arange(1, 11) / 50
     theta, v = followed(beta, 0.0, 2.3, [3000.0])
     turns = theta[:, 0] / (2 * np.pi)
-    return Check(np.stack([np.round(turns), 0 * turns]), np.stack([turns, v[:, 0]]), 1e-9)
+    return Check(np.stack([np.round(turns), 0 * turns]), np.stack([turns, v[:, 0] / 2.3]), 1e-9)
 
 
 CLAIMS = (
     Claim("7.1", "Linearised at θ = nπ: λ² + βλ + ε = 0 for even n, λ² + βλ − ε = 0 for odd n",
           "λ, 1/s, roots / of small motions, n = 0 … 3, β = 0.1", _linearised, ("7.1",)),
-    Claim("7.1", "Even n, β < 2√ε: stable spiral points", "1 for a spiral, β = 0.01 … 1.9",
+    Claim("7.1", "Even n, β < 2√ε: stable spiral points", "1 for a spiral, β = 0.01, 0.16, 1, 1.9",
           _spirals, ("7.1",)),
     Claim("7.1", "Odd n: one root is real positive, the other real negative, a saddle",
-          "sign of the product of real roots, n = 1, 3", _saddles, ("7.1",)),
+          "sign of the product of real roots, n = 1, 3, β = 0.1", _saddles, ("7.1",)),
     Claim("7.2a", "v0 = 2.3: n = 7, 6, 5, 4, 4, 3, 1, 1, 1, 0 for β = 0.010, 0.012 … 0.16",
           "n, as claimed / where the motion ends", _turns, ("7.2a",), ("S2-21",)),
-    Claim("7.2a", "θ(t) tends to 2nπ with an integer n", "θ/2π after 5000 s", _at_rest,
+    Claim("7.2a", "θ(t) tends to 2nπ with an integer n", "θ/2π after 5000 s, the ten β", _at_rest,
           ("7.2a",)),
     Claim("7.2a", "For β = 0 the pendulum continues to rotate if v0 > 2",
           "1 for another two turns after 50 s, v0 = 1.9, 2.3", _undamped),
     Claim("7.2b", "v decays, and its average is zero, for any β but 0",
-          "mean of v over 1500 s, and v after 3000 s, rad/s", _mean, ("7.2b",)),
+          "mean of v from 1500 s to 3000 s, and v there, over v0 = 2.3, β = 0.04 … 0.16", _mean,
+          ("7.2b",)),
     Claim("7.2c", "Each trajectory for β ≠ 0 converges to a spiral point, θ = 2nπ and v = 0",
-          "θ/2π and v after 3000 s, β = 0.02 … 0.20", _spiral_in, ("7.2c",)),
+          "θ/2π and v/v0 after 3000 s, β = 0.02 … 0.20", _spiral_in, ("7.2c",)),
     Claim("7.2c", "The spiral points become far away from the origin with decreasing β",
-          "1 where n does not grow with β", _farther, ("7.2c",)),
+          "1 where n does not grow with β, and 1 if that of 0.02 is above that of 0.20", _farther,
+          ("7.2c",)),
+    Claim("7.2c", "The terminal v is zero except for β = 0, which rotates",
+          "1 for another two turns from 200 s to 300 s, β = 0, 0.02 … 0.20", _terminal,
+          ("7.2c",)),
 )  # fmt: skip

@@ -8,6 +8,7 @@ from ._claim import Check, Claim
 from ._computed import (
     amplitude,
     arrival,
+    complete,
     frequency,
     integral,
     jacobi,
@@ -38,8 +39,8 @@ def _twice_differentiated(ts, x):
 
 def _acceleration(sign) -> Check:
     ts, theta, _ = _one_period(1.2)
-    claimed = sign * _M * _G * np.sin(theta)
-    return Check(claimed, _M * _L * _twice_differentiated(ts, theta), 1e-9)
+    pull = _M * _G * np.sin(theta)
+    return Check(sign * pull, _M * _L * _twice_differentiated(ts, theta), 1e-9, -pull)
 
 
 def _moment() -> Check:
@@ -71,7 +72,7 @@ def _extremes() -> Check:
 
 def _string() -> Check:
     held = [_pull(np.radians(degrees))[2].min() >= 0 for degrees in (60, 120, 170)]
-    return Check(np.ones(3), held, 0)
+    return Check(np.ones(3), held, 0, [1, 0, 0])
 
 
 _TOPS = np.radians([30.0, 90.0, 150.0])
@@ -87,8 +88,8 @@ def _conserved() -> Check:
 def _velocity(boxed: bool) -> Check:
     theta, v = solved(_SPEEDS, np.linspace(0.02, 0.2, 10), 0.0, EPSILON)  # upwards
     root = np.sqrt(np.cos(theta) - np.cos(_TOPS)[:, None])
-    claimed = np.sqrt(2 * EPSILON * root) if boxed else np.sqrt(2 * EPSILON) * root
-    return Check(claimed, v, 1e-9)
+    right = np.sqrt(2 * EPSILON) * root
+    return Check(np.sqrt(2 * EPSILON * root) if boxed else right, v, 1e-9, right)
 
 
 def _oscillates() -> Check:
@@ -112,10 +113,15 @@ def _time() -> Check:
 
 def _formula(released: bool) -> Check:
     t, modulus = np.linspace(0, 5, 41), np.sin(_TOPS / 2)[:, None]
-    claimed = 2 * np.arcsin(modulus * jacobi(np.sqrt(EPSILON) * t, modulus**2)[0])
+
+    def swing(u):
+        return 2 * np.arcsin(modulus * jacobi(u, modulus**2)[0])
+
+    u, quarter = np.sqrt(EPSILON) * t, complete(modulus**2)
     starts = (np.zeros(3), t, _TOPS) if released else (_SPEEDS, t, 0.0)
     error = solver_error(2 * modulus[:, 0], 5 * np.sqrt(EPSILON))
-    return Check(claimed, solved(*starts, EPSILON)[0], error)
+    corrected = swing(quarter - u) if released else None
+    return Check(swing(u), solved(*starts, EPSILON)[0], error, corrected)
 
 
 def _resembles() -> Check:
@@ -156,9 +162,11 @@ def _modulus() -> Check:
 
 
 CLAIMS = (
-    Claim("S0 1.1-1.3", "1.1: m L θ̈ = −mg sin θ", "force along the arc, N, formula / m L θ̈",
+    Claim("S0 1.1-1.3", "1.1: m L θ̈ = −mg sin θ",
+          "force along the arc, N, formula / m L θ̈, θ_max = 1.2 rad",
           lambda: _acceleration(-1)),
-    Claim("S0 1.1-1.3", "1.1: F_T = mg sin θ", "force along the arc, N, printed / m L θ̈",
+    Claim("S0 1.1-1.3", "1.1: F_T = mg sin θ",
+          "force along the arc, N, printed / m L θ̈, θ_max = 1.2 rad",
           lambda: _acceleration(1), errata=("S0-11",)),
     Claim("S0 1.1-1.3", "1.1: m v²/L = T − mg cos θ",
           "T, N, formula / from accelerations, θ_max = 60°", _radial, ("es1.1",)),
@@ -166,32 +174,43 @@ CLAIMS = (
           "T, N, formula / from accelerations, θ_max = 60°", _extremes, ("es1.1",), ("S0-13",)),
     Claim("S0 1.1-1.3", "The mass hangs on a string or a rod, 0 < θ_max < π: a string",
           "1 if a string stays tight, θ_max = 60°, 120°, 170°", _string, ("es1.1",), ("S0-13",)),
-    Claim("S0 1.1-1.3", "1.2: −mgL sin θ = I θ̈, I = mL²", "torque, N m, formula / I θ̈", _moment,
-          errata=("S0-12",)),
+    Claim("S0 1.1-1.3", "1.2: −mgL sin θ = I θ̈, I = mL²",
+          "torque, N m, formula / I θ̈, θ_max = 2 rad",
+          _moment, errata=("S0-12",)),
     Claim("S0 1.1-1.3", "1.3, 2: 1 − cos θ_max = (L/2g) θ̇² + 1 − cos θ",
-          "energy over mgL, at the end / along the motion", _conserved, errata=("S0-14",)),
+          "energy over mgL, at the end / along the motion, θ_max = 30°, 90°, 150°", _conserved,
+          errata=("S0-14",)),
     Claim("S0 3.1", "3: E < E_p: it oscillates, 0 < θ_max < π (E_p being the barrier, 2mgL)",
-          "1 where |θ| < π throughout, E/E_p = 0.3, 0.99, 1.01, 2", _oscillates,
+          "1 where |θ| < π up to t = 30, E/E_p = 0.3, 0.99, 1.01, 2", _oscillates,
           errata=("S0-15", "S0-16")),
-    Claim("S0 3.1", "θ̇ = √(2g/L) √(cos θ − cos θ_max)", "θ̇, rad/s, upwards, formula / solver",
+    Claim("S0 3.1", "θ̇ = √(2g/L) √(cos θ − cos θ_max)",
+          "θ̇, rad/s, upwards, formula / solver, θ_max = 30°, 90°, 150°",
           lambda: _velocity(False), errata=("S0-1",)),
     Claim("S0 3.1", "boxed: √(2g/L √(cos θ − cos θ_max))",
-          "θ̇, rad/s, upwards, formula / solver", lambda: _velocity(True), errata=("S0-1",)),
-    Claim("S0 3.1", "½θ̇² = (g/L) cos θ + C, C = −(g/L) cos θ_max", "θ̇², (rad/s)², both ways",
+          "θ̇, rad/s, upwards, formula / solver, θ_max = 30°, 90°, 150°", lambda: _velocity(True),
+          errata=("S0-1",)),
+    Claim("S0 3.1", "½θ̇² = (g/L) cos θ + C, C = −(g/L) cos θ_max",
+          "θ̇², (rad/s)², formula / solver, θ_max = 30°, 90°, 150°",
           _both_ways),
     Claim("S0 3.2", "(3.6): √(g/L) t = ∫dφ/√(1 − k² sin²φ), sin φ = sin(θ/2)/k",
-          "√(g/L) t, quadrature / arrival at θ", _time),
-    Claim("S0 3.2", "k = sin(θ_max/2)", "k, formula / from the largest angle", _modulus),
-    Claim("S0 3.2", "θ = 2 arcsin(k sn(√(g/L) t, k))", "θ, rad, formula / solver from the bottom",
+          "√(g/L) t, quadrature / arrival at θ, θ_max = 30°, 90°, 150°", _time),
+    Claim("S0 3.2", "k = sin(θ_max/2)", "k, formula / from the largest angle, 30°, 90°, 150°",
+          _modulus),
+    Claim("S0 3.2", "θ = 2 arcsin(k sn(√(g/L) t, k))",
+          "θ, rad, formula / solver from the bottom, t = 0 … 5",
           lambda: _formula(False), errata=("S0-3",)),
     Claim("S0 3.2", "At t = 0 it is at rest at θ_max (the condition from which C comes)",
-          "θ, rad, formula / solver from rest at θ_max", lambda: _formula(True),
+          "θ, rad, formula / solver from rest at θ_max = 30°, 90°, 150°, t = 0 … 5",
+          lambda: _formula(True),
           errata=("S0-2",)),
-    Claim("S0 3.2.1", "sn for k = 0.05 looks like a sine", "sin u / sn u, to a line's width",
+    Claim("S0 3.2.1", "sn for k = 0.05 looks like a sine",
+          "sin u / sn u, u = 0 … 4π, to a line's width",
           _resembles, ("es3.2.1",)),
-    Claim("S0 3.2.1", "Plot of sn for k = 0.05 and 0.9", "sn u / sin(θ/2)/k by the solver",
+    Claim("S0 3.2.1", "Plot of sn for k = 0.05 and 0.9",
+          "sn u / sin(θ/2)/k by the solver, u = 0 … 12",
           _plotted, ("es3.2.1",)),
-    Claim("S0 4", "T/4 = √(L/g) K(k)", "T/4, s, quadrature / solver", _quarter),
+    Claim("S0 4", "T/4 = √(L/g) K(k)", "T/4, s, quadrature / solver's first return, 30°, 90°, 150°",
+          _quarter),
     Claim("S0 4", "T = T0 Σ ((2n)!/(2²ⁿ n!²))² sin²ⁿ(θ_max/2)",
           "T/T0, 500 terms / AGM, θ_max = 15° … 150°", _series, ("es4",), ("S0-10", "S0-17")),
 )  # fmt: skip

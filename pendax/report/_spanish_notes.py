@@ -46,7 +46,8 @@ def _inverse_sine() -> Check:
 
 
 def _limit(upper) -> Check:
-    return Check(integral(_legendre(-0.5), upper), incomplete(_PHI, _MODULUS**2), 1e-13)
+    claimed, right = (integral(_legendre(-0.5), x) for x in (upper, _PHI))
+    return Check(claimed, incomplete(_PHI, _MODULUS**2), 1e-13, right)
 
 
 _M_SERIES = np.array([0.04, 0.25, 0.64])
@@ -85,7 +86,7 @@ def _k_series() -> Check:
 def _e_series(from_zero: bool) -> Check:
     terms = -_ratios(1) / (2 * _N - 1)
     if from_zero:  # 1 − Σ from n = 0 on, whose first term is −1
-        return Check(_sums(terms) + 0.5 * np.pi, _second(_M_SERIES), 1e-13)
+        return Check(_sums(terms) + 0.5 * np.pi, _second(_M_SERIES), 1e-13, _sums(terms))
     claimed = [_sums(_ratios(form) / (1 - 2 * _N)) for form in range(3)]
     return Check(np.stack(claimed), _second(_M_SERIES), 1e-13)
 
@@ -99,10 +100,9 @@ def _binomial() -> Check:
     return Check(np.sum(terms, -1), 1 / dn, 1e-12)
 
 
-def _wallis(n, claimed) -> Check:
-    n = np.asarray(n)
+def _wallis(n, claimed, corrected=None) -> Check:
     found = integral(lambda x: np.sin(x) ** n[:, None], np.full(n.size, 0.5 * np.pi))
-    return Check(claimed, found, 1e-13)
+    return Check(claimed, found, 1e-13, corrected)
 
 
 def _even() -> Check:
@@ -112,7 +112,7 @@ def _even() -> Check:
 
 def _printed_odd() -> Check:
     n = np.array([3, 5, 7])  # (2/1)(4/3)(6/5) … as it begins
-    return _wallis(n, np.cumprod((n - 1) / (n - 2)) * 0.5 * np.pi)
+    return _wallis(n, np.cumprod((n - 1) / (n - 2)) * 0.5 * np.pi, np.cumprod((n - 1) / n))
 
 
 def _first_order() -> Check:
@@ -124,14 +124,17 @@ def _first_order() -> Check:
 
 CLAIMS = (
     Claim("S0 5.1-5.2", "(5.3)–(5.5): sn is the inverse of ∫dv/(√(1 − v²) √(1 − k²v²))",
-          "sn, k = 0.8", _inverse_sine, ("es3.2.1",)),
+          "sn, k = 0.8, am u = 0.3, 0.8, 1.3", _inverse_sine, ("es3.2.1",)),
     Claim("S0 5.1-5.2", "(5.7): sn⁻¹(sin φ, k) = ∫du/√(1 − k² sin²u) from 0 to φ",
-          "F, quadrature / Carlson's", lambda: _limit(_PHI)),
+          "F, quadrature / Carlson's, k = 0.8, φ = 0.3, 0.8, 1.3", lambda: _limit(_PHI)),
     Claim("S0 5.1-5.2", "(5.7): sn⁻¹(sin φ, k) = ∫du/√(1 − k² sin²u) from 0 to sin φ, as printed",
-          "F, quadrature / Carlson's", lambda: _limit(np.sin(_PHI)), errata=("S0-4",)),
-    Claim("S0 5.1-5.2", "F and E in Legendre's and in Jacobi's form", "F and E, k = 0.8", _forms),
+          "F, quadrature / Carlson's, k = 0.8, φ = 0.3, 0.8, 1.3", lambda: _limit(np.sin(_PHI)),
+          errata=("S0-4",)),
+    Claim("S0 5.1-5.2", "F and E in Legendre's and in Jacobi's form",
+          "F and E, k = 0.8, φ = 0.3, 0.8, 1.3",
+          _forms),
     Claim("S0 5.1-5.2", "Π with 1 + n sin²u, incomplete and complete",
-          "Π, n = 0.4, quadrature / Π(−n | k²) of DLMF 19.2.7", _third_kind,
+          "Π, n = 0.4, k = 0.8, quadrature / Π(−n | k²) of DLMF 19.2.7", _third_kind,
           errata=("S0-5",)),
     Claim("S0 5.1-5.2", "F(x) = K: three series of K(k), the same one",
           "K, 400 terms / AGM, k = 0.2, 0.5, 0.8", _k_series, errata=("S0-6",)),
@@ -140,11 +143,12 @@ CLAIMS = (
     Claim("S0 5.1-5.2", "Series of E(k), form 2: π/2 (1 − Σ from n = 0)",
           "E, 400 terms / AGM, k = 0.2, 0.5, 0.8", lambda: _e_series(True), errata=("S0-7",)),
     Claim("S0 5.3", "(1 − z)^(−1/2) by the binomial series, z = k² sin²u",
-          "1/√(1 − z), 400 terms / 1/dn", _binomial, errata=("S0-8",)),
+          "1/√(1 − z), 400 terms / 1/dn, u = 0 … 1.5, k = 0.2, 0.5, 0.8", _binomial,
+          errata=("S0-8",)),
     Claim("S0 5.3", "∫sinⁿu du from 0 to π/2 is (1/2)(3/4) … ((n − 1)/n) π/2 for even n",
           "integral, n = 2, 4, 6, 8", _even),
     Claim("S0 5.3", "∫sinⁿu du from 0 to π/2 is (2/1)(4/3)(6/5) … π/2 for odd n",
           "integral, n = 3, 5, 7", _printed_odd, errata=("S0-9",)),
     Claim("S0 5.4", "p = θ̇: p dp/dθ = −(g/L) sin θ, so ½p² = (g/L) cos θ + C",
-          "½p², (rad/s)², formula / solver", _first_order),
+          "½p², (rad/s)², formula / solver, θ0 = 0.3, 1, 2.5, θ̇0 = 3, 5, 8", _first_order),
 )  # fmt: skip
