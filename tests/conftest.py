@@ -1,5 +1,6 @@
 """Strict JAX for every test, both precisions, and the folder of true values."""
 
+import gc
 import os
 from pathlib import Path
 
@@ -22,6 +23,15 @@ def dtype(request):
     """The test runs in either precision, float32 as with JAX's own settings."""
     with jax.enable_x64(request.param == "float64"):
         yield jax.numpy.dtype(request.param)
+
+
+@pytest.fixture(autouse=True, scope="module")
+def forget_compiled_programs():
+    """After each file: a process may map 65,530 pieces of memory, and some hundred programs of
+    XLA's CPU backend use them up, upon which it aborts."""
+    yield
+    jax.clear_caches()
+    gc.collect()
 
 
 @pytest.fixture(scope="session")

@@ -54,6 +54,7 @@ def scene(x, ts, **options):
 X = jnp.array([1.3, 0.0, 0.0, 1.9, 0.3])
 
 
+@pytest.mark.full  # compiles for a minute; modes and orders of Taylor are in test_taylor.py
 def test_every_mode_and_order():
     """Against the closed form's in ε, v0, θ0, each mode against every other."""
 
@@ -77,6 +78,7 @@ def test_every_mode_and_order():
     np.testing.assert_allclose(mapped[1], jax.grad(solved)(lanes[1]), rtol=1e-7)
 
 
+@pytest.mark.full  # compiles long
 def test_derivatives_in_the_times():
     """∂θ/∂t = v; a shift of all times changes nothing but a torque's phase."""
     pendulum = Pendulum(1.0, 0.1, jnp.sin)

@@ -212,7 +212,9 @@ STARTS = [
 ]
 
 
-@pytest.mark.parametrize("scene", STARTS)
+@pytest.mark.parametrize(
+    "scene", [*STARTS[:2], *(pytest.param(x, marks=pytest.mark.full) for x in STARTS[2:])]
+)
 def test_where_it_sticks(scene):
     def stop(x):
         epsilon, beta, tau, dry, theta0, v0 = x
@@ -335,6 +337,7 @@ def test_fit_of_dry_friction_alone_and_of_none():
     assert 0 <= fit.model.dry < 4 * fit.errors["dry"]
 
 
+@pytest.mark.full  # compiles long
 def test_fit_of_inertia_and_bias():
     ts = np.linspace(0.0, 12.0, 400)
     torque = 1.5 * np.sin(2.1 * ts) + 0.8 * np.sin(5.3 * ts)

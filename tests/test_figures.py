@@ -1,6 +1,7 @@
 """The sources' figures: what they show, and that all of it can be read."""
 
 import itertools
+from functools import cache
 
 import matplotlib as mpl
 import numpy as np
@@ -37,10 +38,16 @@ def texts(figure: Figure):
                 yield text, box
 
 
+@cache
+def drawn_once(name):
+    with plot.style():
+        return FIGURES[name].figure()
+
+
 @names
 def test_nothing_written_is_cut_off_or_written_over(name):
+    figure = drawn_once(name)
     with plot.style():
-        figure = FIGURES[name].figure()
         found = list(texts(figure))
     inside = figure.bbox.padded(1)
     # Ticks beyond the limits are artists too, though not drawn.
@@ -63,8 +70,7 @@ def test_nothing_written_is_cut_off_or_written_over(name):
 
 @names
 def test_axes_have_names_and_units(name):
-    with plot.style():
-        figure = FIGURES[name].figure()
+    figure = drawn_once(name)
     for ax in figure.axes:
         if ax.axison:
             assert ax.get_xlabel() or ax.get_ylabel(), ax

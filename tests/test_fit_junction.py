@@ -28,6 +28,7 @@ def inside(fit, name, true):
     return abs(float(found) - true) < 3 * float(fit.errors[name])
 
 
+@pytest.mark.full  # half a minute
 def test_underdamped():
     """Noise, offsets of both instruments, and the hysteresis that tells C."""
     rng = np.random.default_rng(3)
