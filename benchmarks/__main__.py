@@ -1,66 +1,95 @@
-"""The command line of the benchmarks."""
+"""Error against run time, stability, and what a scene costs: measured, written, compared.
+
+`python -m benchmarks` measures everything, topic after topic, into benchmarks/results (JSON and
+figures) and renews the tables of the README; `python -m benchmarks free gradients` measures two.
+"""
 
 import argparse
+import subprocess
 import sys
+import time
 from importlib import import_module
 from pathlib import Path
+
+from . import results
 
 # The references and the tagged cases are those of the tests.
 sys.path.insert(0, str(Path(__file__).parent.parent / "tests"))
 
+TOPICS = {
+    "accuracy": "errors of the special functions by region, beside SciPy's",
+    "special": "their run times, beside the peers'",
+    "free": "the free pendulum: closed form, diffrax, SciPy, heyoka",
+    "damped": "damped, driven, stiff and barely damped scenes, the same solvers",
+    "gradients": "forward, reverse, adjoints, variational equations, differences",
+    "sweeps": "1 to 32,768 lanes: time a lane, compile time, memory",
+    "dry": "dry friction, beside events",
+    "fate": "where motions end, beside a script",
+    "junction": "I–V curves, beside time stepping",
+    "fit": "parameters from random recordings",
+    "stability": "stiff and extreme cases, beside SciPy and diffrax",
+    "lean": "operations of the compiled scene, against paper",
+    "start": "imports, and from the shell to the first number",
+}
+
 
 def main() -> int:
-    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
-    commands = parser.add_subparsers(dest="command", required=True)
-    accuracy = commands.add_parser("accuracy", help="errors in eps by region, beside SciPy's")
-    accuracy.add_argument("--seed", type=int, default=1, help="draws other points")
-    accuracy.add_argument("--points", type=int, default=400, help="of each region")
-    special = commands.add_parser("special", help="error against run time, beside the peers'")
-    special.add_argument("--seed", type=int, default=1, help="draws other arguments")
-    special.add_argument("--size", type=int, default=2**20, help="elements of an array")
-    special.add_argument("--rounds", type=int, default=15, help="timings of each, interleaved")
-    special.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
-    motion = commands.add_parser("motion", help="the closed form beside diffrax's solvers")
-    motion.add_argument("--seed", type=int, default=1, help="draws other arguments")
-    motion.add_argument("--size", type=int, default=2**20, help="values of an array")
-    motion.add_argument("--rounds", type=int, default=15, help="timings of each, interleaved")
-    motion.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
-    lean = commands.add_parser("lean", help="operations of the compiled scene, against paper")
-    lean.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
-    damped = commands.add_parser("damped", help="damped and driven scenes, against 30 digits")
-    damped.add_argument("--seed", type=int, default=1, help="draws other scenes")
-    damped.add_argument("--scenes", type=int, default=1000, help="random scenes")
-    damped.add_argument("--rounds", type=int, default=15, help="timings of each, interleaved")
-    damped.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
-    dry = commands.add_parser("dry", help="dry friction, against 30 digits and beside events")
-    dry.add_argument("--seed", type=int, default=1, help="draws other scenes")
-    dry.add_argument("--scenes", type=int, default=60, help="random scenes")
-    dry.add_argument("--rounds", type=int, default=7, help="timings of each, interleaved")
-    dry.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
-    fate = commands.add_parser("fate", help="where motions end, against 30 digits")
-    fate.add_argument("--seed", type=int, default=1, help="draws other starts")
-    fate.add_argument("--pixels", type=int, default=200, help="of each map that are compared")
-    fate.add_argument("--rounds", type=int, default=5, help="timings of each, interleaved")
-    fate.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
-    junction = commands.add_parser("junction", help="I–V curves beside time stepping")
-    junction.add_argument("--seed", type=int, default=1, help="draws other junctions")
-    junction.add_argument("--scenes", type=int, default=40, help="random voltages of either kind")
-    junction.add_argument("--rounds", type=int, default=5, help="timings of each, interleaved")
-    junction.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
-    fit = commands.add_parser("fit", help="parameters from random recordings")
-    fit.add_argument("--seed", type=int, default=1, help="draws other scenes")
-    fit.add_argument("--scenes", type=int, default=1000, help="random scenes")
-    fit.add_argument("--rounds", type=int, default=5, help="timings of each, interleaved")
-    fit.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
-    stability = commands.add_parser("stability", help="stiff and extreme cases, beside peers")
-    stability.add_argument("--check", action="store_true", help="exit 1 where a bar is missed")
-    options = vars(parser.parse_args())
+    options = _parser().parse_args()
+    if options.list:
+        print("\n".join(f"{name:10} {about}" for name, about in TOPICS.items()))
+        return 0
+    names = options.topics or list(TOPICS)
+    worst = 0
+    if len(names) == 1:
+        worst = _one(names[0], options)
+    else:  # each in a process of its own: programs, memory and settings are not shared
+        for name in names:
+            done = subprocess.run([sys.executable, "-m", "benchmarks", name, *_flags(options)])
+            worst = max(worst, done.returncode)
+    if not options.quick:
+        from . import readme
 
+        readme.renew()
+    return worst
+
+
+def _one(name: str, options: argparse.Namespace) -> int:
     import jax
 
     jax.config.update("jax_enable_x64", True)
-    report = import_module(f".{options.pop('command')}", __package__).report
-    return report(**options)
+    started = time.perf_counter()
+    print(f"\n# {name}: {TOPICS[name]}", flush=True)
+    module = import_module(f".{name}", __package__)
+    tables = module.measure(options.seed, options.quick)
+    if not options.verify:
+        path = results.write(name, tables, seed=options.seed, quick=options.quick)
+    for title, rows in tables.items():
+        if rows:
+            print(f"\n{title}\n\n{results.markdown(rows)}")
+    missed = results.missed(tables)
+    print(f"\n{name}: {time.perf_counter() - started:.0f} s; missed: {'; '.join(missed) or 'none'}")
+    if options.verify:
+        folder = results.QUICK if options.quick else results.FOLDER
+        return int(results.differ(results.read(name, folder)["tables"], tables) > 0)
+    print(f"written: {path}", flush=True)
+    return int(options.check and bool(missed))
+
+
+def _flags(options: argparse.Namespace) -> list[str]:
+    flags = [f"--{name}" for name in ("quick", "check", "verify") if getattr(options, name)]
+    return [*flags, "--seed", str(options.seed)]
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    add = parser.add_argument
+    add("topics", nargs="*", metavar="TOPIC", choices=[*TOPICS, []], help="all, if none is named")
+    add("--list", action="store_true", help="the topics, a line each")
+    add("--quick", action="store_true", help="fewer points and rounds, into results/quick")
+    add("--seed", type=int, default=1, help="draws other points")
+    add("--check", action="store_true", help="exit 1 where a bar is missed")
+    add("--verify", action="store_true", help="compare with the results kept, and keep those")
+    return parser
 
 
 if __name__ == "__main__":

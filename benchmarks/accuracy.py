@@ -5,7 +5,7 @@ u makes, and of the value itself), of |f| for K and E, and of |f| + the sum of |
 over all arguments elsewhere.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 import flint
 import jax.numpy as jnp
@@ -16,36 +16,76 @@ from cases import cases
 
 from pendax import special
 
-from . import integrals
+from . import integrals, results
+from .compared import error_loss
 
 EPS = 2.0**-52
+PROMISED = {  # by the docstrings
+    "sn, cn, dn": 8,
+    **dict.fromkeys(("ellipk", "ellipe", "ellipkm1", "elliprf"), 3),
+    **dict.fromkeys(("ellipnome", "arcsn"), 8),
+    **dict.fromkeys(("ellipkinc", "ellipeinc", "ellippi", "ellippiinc"), 10),
+    "elliprc": 6,
+    "elliprd": 4,
+    "elliprg": 5,
+    "elliprj": 20,
+}
+POLYNOMIAL = "Cephes: two polynomials and a logarithm; ours: twelve means, each of which rounds"
+COMPENSATED = "SciPy's sums carry their rounding errors along; ours don't"
+HALF_PERIODS = "half periods, which are rounded, are taken off u; Cephes leaves that to sin"
+CHANCE = "chance: both are below one eps"
+WHY = {
+    "sn, cn, dn, at zero (m)": HALF_PERIODS,
+    "sn, cn, dn, at one (m)": "Cephes goes on with tanh; ours come from sinh and cosh",
+    "sn, cn, dn, quarter periods (m)": HALF_PERIODS,
+    "sn, cn, dn, huge u (m)": HALF_PERIODS,
+    "ellipk": POLYNOMIAL,
+    "ellipe": POLYNOMIAL,
+    "ellipkinc": "Carlson's form and a sine; Cephes descends to an arctangent",
+    "ellipeinc": "two of Carlson's forms are added; Cephes descends to an arctangent",
+    **dict.fromkeys(("elliprf", "elliprc", "elliprd", "elliprg", "elliprj"), COMPENSATED),
+}
 
 
-def report(seed: int, points: int) -> int:
-    print("| function | region | pendax max | mean | SciPy max | mean |")
-    print("|---|---|---|---|---|---|")
+def measure(seed: int, quick: bool) -> results.Tables:
+    points = 24 if quick else 300
+    rows, behind, largest = [], [], {}
+    for function, region, ours, theirs in errors(points, seed, quick):
+        ours, theirs = _max_and_mean(ours), _max_and_mean(theirs)
+        columns = {"max": ours[0], "mean": ours[1], "SciPy max": theirs[0], "SciPy mean": theirs[1]}
+        rows.append({"function": function, "region": region, **columns})
+        largest[function] = max(largest.get(function, 0.0), ours[0])
+        where = f"{function}, {region}"
+        if theirs[0] is not None and theirs[0] < ours[0]:
+            why = WHY.get(function, CHANCE if ours[0] < 1 else "unexplained")
+            why = WHY.get(where, why)
+            behind.append(error_loss(where, "SciPy", ours[0], theirs[0], why))
+    return {
+        f"errors in eps of their scale, {points} random points a region": rows,
+        "losses": behind,
+        "bars": [
+            results.bar(f"{function}, eps × scale", error, at_most=PROMISED[function])
+            for function, error in largest.items()
+        ],
+    }
+
+
+def _max_and_mean(errors) -> tuple[float | None, float | None]:
+    if errors is None or not np.isfinite(errors).all():
+        return None, None
+    return float(np.max(errors)), float(np.mean(errors))
+
+
+def errors(points: int, seed: int, quick: bool) -> Iterator[tuple]:
+    """(function, region, errors of pendax, of SciPy or None)."""
     for tag, case in cases("float64", points, seed).items():
-        ours, theirs = jacobi_errors(case)
-        show("sn, cn, dn", f"{tag} ({case.name})", ours, theirs)
+        yield "sn, cn, dn", f"{tag} ({case.name})", *jacobi_errors(case)
     for name, region, x in complete_cases(points, seed):
         ours = complete_errors(name, x, np.asarray(getattr(special, name)(x)))
-        theirs = complete_errors(name, x, getattr(scipy.special, name)(x))
-        show(name, region, ours, theirs)
+        yield name, region, ours, complete_errors(name, x, getattr(scipy.special, name)(x))
     for name, region, ours in inverse_errors(points, seed):
-        show(name, region, ours, None)
-    for row in integrals.accuracy(points, seed):
-        show(*row)
-    return 0
-
-
-def show(function: str, region: str, ours, theirs) -> None:
-    cells = []
-    for errors in (ours, theirs):
-        if errors is None:
-            cells += ["", ""]
-        else:
-            cells += [f"{np.max(errors):.2g}", f"{np.mean(errors):.2g}"]
-    print(f"| {function} | {region} | {' | '.join(cells)} |", flush=True)
+        yield name, region, ours, None
+    yield from integrals.accuracy(points, seed, quick)
 
 
 def jacobi_errors(case) -> tuple[np.ndarray, np.ndarray | None]:

@@ -10,16 +10,37 @@ import numpy as np
 
 from pendax import Pendulum, settle, simulate
 
-from .timing import side_by_side
+from . import cores, results
+from .compared import Point, losses, spent
+from .timing import Timing, side_by_side
 
 NAMES = ("epsilon", "beta", "tau", "dry", "theta0", "v0")
 SAVED = np.linspace(6.0, 60.0, 10)
+WORK = "a swing of 45 turning points"
+WHY = {}  # of losses, which there were none
 
 
-def report(seed: int, scenes: int, rounds: int, check: bool) -> int:
-    missed = random_scenes(seed, scenes)
-    beside_peers(rounds)
-    return 1 if check and missed else 0
+def measure(seed: int, quick: bool) -> results.Tables:
+    scenes, rounds = (3, 3) if quick else (40, 7)
+    errors, swings = random_scenes(seed, scenes, quick)
+    points = beside_peers(rounds, quick)
+    return {
+        f"{scenes} random scenes to t = 60, {swings} turning points at most": [
+            {"what": what, "median": float(np.median(off)), "largest": float(max(off))}
+            for what, off, _ in errors
+        ],
+        "a swing of 45 turning points: error of its last angle, rad": [
+            {
+                "method": point.method,
+                "setting": point.setting,
+                **spent(point.timing, "ms"),
+                "error": point.error,
+            }
+            for point in points
+        ],
+        "losses": losses((point for point in points if "lane" not in point.setting), WHY),
+        "bars": [results.bar(what, max(off), at_most=limit) for what, off, limit in errors],
+    }
 
 
 def draw(seed: int, count: int) -> np.ndarray:
@@ -42,45 +63,61 @@ def _theta(x, rtol=None):
     return simulate(Pendulum(epsilon, beta, tau, dry), SAVED, v0, theta0, rtol=rtol).theta
 
 
-def random_scenes(seed: int, count: int) -> int:
-    """θ over tolerance × (1 + max|θ|) × (1 + κ), bar 100; gradients over their size, bar 1e-7;
-    the angle at rest, bar 1e-9."""
+def random_scenes(seed: int, count: int, quick: bool) -> tuple[list[tuple], int]:
+    """(what, errors, bar) of all, and the most turning points of one."""
     rows = draw(seed, count)
-    motions = {r: jax.jit(jax.vmap(partial(_theta, rtol=r))) for r in (1e-6, 1e-9, 1e-12)}
-    found = {r: np.asarray(f(rows)) for r, f in motions.items()}
-    slopes = np.asarray(jax.jit(jax.vmap(jax.jacrev(_theta)))(rows))
+    tolerances = (1e-9,) if quick else (1e-6, 1e-9, 1e-12)
+    found = {r: np.asarray(jax.jit(jax.vmap(partial(_theta, rtol=r)))(rows)) for r in tolerances}
+    if not quick:  # the derivatives take longest to compile
+        slopes = np.asarray(jax.jit(jax.vmap(jax.jacrev(_theta)))(rows))
     epsilon, beta, tau, dry, theta0, v0 = rows.T
     ends = settle(Pendulum(epsilon, beta, tau, dry), v0, theta0, throw=False)
-    shares, wrong, stops, turns = {r: [] for r in found}, [], [], []
-    for i, row in enumerate(rows):
-        scene = dict(zip(NAMES, row.tolist(), strict=True))
-        states, turned, _ = references.trajectory(**scene, ts=SAVED)
-        true = np.array([float(theta) for theta, _ in states])
-        exact = np.moveaxis(references.slopes(NAMES, scene, SAVED), 0, -1)[:, 0]
-        kappa = np.abs(exact[:, 4:]).max()
-        turns.append(len(turned))
+    truths = cores.each(_truth_of_start if quick else _truth, rows, worth=10)
+    stops = (ends.running == 0) & np.isfinite(ends.time) & (ends.time < 300)
+    resting = cores.each(_rest, np.c_[rows, ends.time][stops], worth=100)
+    shares, wrong = {r: [] for r in found}, []
+    for i, (true, exact, _) in enumerate(truths):
+        kappa = np.abs(exact[:, -2:]).max()
         for r, share in shares.items():
             scale = r * (1 + np.abs(true).max()) * (1 + kappa)
             share.append(np.abs(found[r][i] - true).max() / scale)
-        wrong.append(np.abs(slopes[i] - exact).max() / (1 + np.abs(exact).max()))
-        if ends.running[i] == 0 and np.isfinite(ends.time[i]) and ends.time[i] < 300:
-            last, _, held = references.trajectory(**scene, ts=[float(ends.time[i]) + 1])
-            if held:
-                stops.append(abs(float(ends.theta[i]) - float(last[0][0])))
-    print(f"\n{count} random scenes to t = 60 (seed {seed}), {max(turns)} turning points at most")
-    for r, share in shares.items():
-        print(
-            f"θ at rtol {r:.0e}: {np.median(share):.2g} median, {max(share):.2g} largest, bar 100"
-        )
-    print(f"gradients: {np.median(wrong):.1e} median, {max(wrong):.1e} largest, bar 1e-07")
-    print(f"{len(stops)} stops: {max(stops):.1e} rad largest, bar 1e-09")
-    return sum(max(x) > 100 for x in shares.values()) + (max(wrong) > 1e-7) + (max(stops) > 1e-9)
+        if not quick:
+            wrong.append(np.abs(slopes[i] - exact).max() / (1 + np.abs(exact).max()))
+    angles = np.asarray(ends.theta)[stops]
+    off = [abs(a - b) for a, b in zip(angles, resting, strict=True) if b is not None]
+    errors = [
+        (f"θ at rtol {r:.0e}, in tolerance × (1 + max θ) (1 + κ)", share, 100)
+        for r, share in shares.items()
+    ]
+    if not quick:
+        errors.append(("gradients, of their size", wrong, 1e-7))
+    errors.append(("angle at rest, rad", off or [np.nan], 1e-9))
+    return errors, max(turns for _, _, turns in truths)
+
+
+def _truth(row, names=NAMES):
+    """θ at the times, its derivatives by the names, and how many turning points there were."""
+    scene = dict(zip(NAMES, row, strict=True))
+    states, turned, _ = references.trajectory(**scene, ts=SAVED)
+    slopes = np.moveaxis(references.slopes(names, scene, SAVED), 0, -1)[:, 0]
+    return np.array([float(theta) for theta, _ in states]), slopes, len(turned)
+
+
+_truth_of_start = partial(_truth, names=NAMES[4:])
+
+
+def _rest(row) -> float | None:
+    """The angle a second after the last number of the row, if it rests there."""
+    states, _, held = references.trajectory(
+        **dict(zip(NAMES, row[:-1], strict=True)), ts=[row[-1] + 1]
+    )
+    return float(states[0][0]) if held else None
 
 
 SCENE = (4.0, 0.0, 0.0, 0.012, 2.5, 0.0)
 
 
-def beside_peers(rounds: int) -> None:
+def beside_peers(rounds: int, quick: bool) -> list[Point]:
     """One swing of 45 turning points, its last angle; and 1,024 of them side by side."""
     true = float(references.trajectory(**dict(zip(NAMES, SCENE, strict=True)), ts=[100.0])[0][0][0])
     epsilon, _, _, dry, theta0, _ = SCENE
@@ -100,22 +137,27 @@ def beside_peers(rounds: int) -> None:
 
         return jax.jit(run)
 
-    works = {f"pendax, rtol {r:.0e}": jax.jit(partial(ours, rtol=r)) for r in (1e-6, 1e-9, 1e-12)}
-    works["pendax"] = jax.jit(ours)
-    works |= {f"tanh(v/{w:g}), Dopri8": smoothed(w) for w in (1e-2, 1e-4)}
-    works |= {f"SciPy DOP853, events, {r:.0e}": partial(_scipy, r) for r in (1e-8, 1e-12)}
-    lanes = jax.jit(jax.vmap(ours))
-    many = jnp.full(1024, dry)
-    times = side_by_side(
-        {name: (lambda f=f: f(jnp.asarray(dry))) for name, f in works.items()}
-        | {"pendax, 1,024 lanes": lambda: lanes(many)},
-        rounds,
-    )
-    print("\none swing through 45 turning points: error of the last angle, run time")
-    for name, f in works.items():
-        error = abs(float(f(jnp.asarray(dry))[0]) - true)
-        print(f"{name:28} {error:8.1e}  {times[name] * 1e3:9.3f} ms")
-    print(f"{'a lane of 1,024':28} {'':8}  {times['pendax, 1,024 lanes'] / 1.024:9.4f} ms")
+    works = {("pendax", "default"): jax.jit(ours)}
+    if not quick:
+        for r in (1e-6, 1e-9, 1e-12):
+            works["pendax", f"rtol {r:.0e}"] = jax.jit(partial(ours, rtol=r))
+    for w in (1e-2, 1e-4)[: 1 if quick else 2]:
+        works["diffrax", f"Dopri8, tanh(v/{w:g})"] = smoothed(w)
+    for r in (1e-8, 1e-12)[: 1 if quick else 2]:
+        works["SciPy", f"DOP853, events, rtol {r:.0e}"] = partial(_scipy, r)
+    calls = {name: (lambda f=f: f(jnp.asarray(dry))) for name, f in works.items()}
+    timings = side_by_side(calls, rounds)
+    angles = {name: call()[0] for name, call in calls.items()}
+    if not quick:
+        lanes, many = jax.jit(jax.vmap(ours)), jnp.full(1024, dry)
+        together = "pendax", "a lane of 1,024"
+        of_all = side_by_side({"": lambda: lanes(many)}, 3)[""]
+        timings[together] = Timing(tuple(x / many.size for x in of_all.samples))
+        angles[together] = lanes(many)[0, 0]
+    return [
+        Point(WORK, method, timing, abs(float(angles[method, setting]) - true), setting)
+        for (method, setting), timing in timings.items()
+    ]
 
 
 def _scipy(rtol, c):

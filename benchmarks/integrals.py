@@ -13,8 +13,10 @@ from flint import arb
 
 from pendax import special
 
-from .peers import third_kind
-from .timing import Row, side_by_side
+from . import results
+from .compared import Point, an_element
+from .peers import compiled
+from .timing import side_by_side
 
 SAMPLE = 200  # elements whose error is looked at
 REFERENCES = {
@@ -38,8 +40,9 @@ def errors(name: str, columns: list[np.ndarray], got: np.ndarray) -> list[float]
     return found
 
 
-def accuracy(points: int, seed: int) -> Iterator[tuple]:
-    """(function, region, errors, SciPy's or None)."""
+def accuracy(points: int, seed: int, quick: bool) -> Iterator[tuple]:
+    """(function, region, errors, SciPy's or None); quick: without those that take longer to
+    compile."""
     rng = np.random.default_rng(seed)
     phi = amplitudes(rng, points // 4, True)
     m = parameters(rng, points // 4, True)
@@ -49,10 +52,12 @@ def accuracy(points: int, seed: int) -> Iterator[tuple]:
         ("ellipeinc", [phi, m]),
         ("ellippi", [n, m]),
         ("ellippiinc", [n, phi, m]),
-    ):
+    )[: 2 if quick else None]:
         yield (*both(name, columns, "any"),)
     for exponent in (1, 300):
-        for name, count in (("rf", 3), ("rc", 2), ("rd", 3), ("rg", 3), ("rj", 4)):
+        for name, count in (("rf", 3), ("rc", 2), ("rd", 3), ("rg", 3), ("rj", 4))[
+            : 2 if quick else None
+        ]:
             columns = [10 ** rng.uniform(-exponent, exponent, points // 2) for _ in range(count)]
             yield (*both(f"ellip{name}", columns, f"1e±{exponent}"),)
             if name in ("rc", "rj") and exponent == 1:
@@ -66,12 +71,12 @@ def both(name: str, columns: list[np.ndarray], region: str) -> tuple:
     return name, region, ours, None if peer is None else errors(name, columns, peer(*columns))
 
 
-def speed(size: int, rounds: int, seed: int) -> list[Row]:
+def speed(size: int, rounds: int, seed: int, quick: bool) -> list[Point]:
     """|φ| < 10, and n, m and Carlson's arguments between 0 and 1."""
     rng = np.random.default_rng(seed)
     phi = rng.uniform(-10, 10, size)
     unit = [rng.uniform(0, 1, size) for _ in range(4)]
-    rows = []
+    points = []
     for name, columns in (
         ("ellipkinc", [phi, unit[0]]),
         ("ellipeinc", [phi, unit[0]]),
@@ -81,29 +86,34 @@ def speed(size: int, rounds: int, seed: int) -> list[Row]:
         ("ellippi", unit[:2]),
         ("ellippiinc", [unit[0], phi, unit[1]]),
     ):
-        rows += timed(name, columns, rounds)
-    return rows
+        if quick and name not in ("ellipkinc", "elliprf"):  # others take longer to compile
+            continue
+        points += timed(name, columns, rounds, quick)
+    return points
 
 
-def timed(name: str, columns: list[np.ndarray], rounds: int) -> Iterator[Row]:
+def timed(name: str, columns: list[np.ndarray], rounds: int, quick: bool) -> Iterator[Point]:
     function, on_device = getattr(special, name), [jnp.asarray(x) for x in columns]
+    both_at_once = f"{name}, value and gradient"
     calls = {
         "pendax": partial(jax.jit(function), *on_device),
         "pendax float32": partial(jax.jit(function), *(x.astype(jnp.float32) for x in on_device)),
-        "pendax, value and gradient": partial(jax.jit(value_and_gradient(function)), *on_device),
+        both_at_once: partial(jax.jit(value_and_gradient(function)), *on_device),
     }
     if (peer := getattr(scipy.special, name, None)) is not None:
         calls["SciPy"] = partial(peer, *columns)
-    spent = side_by_side(calls, rounds)
-    picked = slice(None, None, max(1, columns[0].size // SAMPLE))
+    calls |= compiled(name, columns)
+    timings = side_by_side(calls, rounds)
+    picked = slice(None, None, max(1, columns[0].size // (40 if quick else SAMPLE)))
     few = [x[picked] for x in columns]
     for library, call in calls.items():
-        looked_at = library in ("pendax", "SciPy")
-        largest = max(errors(name, few, np.asarray(call())[picked])) if looked_at else None
-        yield Row(name, library, spent[library] / columns[0].size, largest)
-    if "ellippi" in name and (boost := third_kind(columns)) is not None:
-        largest = max(errors(name, few, boost[1][0][picked]))
-        yield Row(name, "Boost, one core", boost[0], largest)
+        timing, error = an_element(timings[library], columns[0].size), None
+        if library == both_at_once:
+            yield Point(both_at_once, "pendax", timing, None)
+            continue
+        if library != "pendax float32":
+            error = float(np.max(errors(name, few, np.asarray(call())[picked])))
+        yield Point(name, library, timing, error)
 
 
 def value_and_gradient(function: Callable) -> Callable:
@@ -114,15 +124,16 @@ def value_and_gradient(function: Callable) -> Callable:
     return call
 
 
-def ratios(rows: list[Row]) -> list[tuple[str, float, float]]:
-    """(what, how many times as fast, bar)."""
-    time = {(row.work, row.library): row.seconds for row in rows}
-    compared = []
-    for name in dict.fromkeys(row.work for row in rows):
-        ours = time[name, "pendax"]
-        for peer, bar in (("SciPy", 5), ("Boost, one core", 1)):
-            if (name, peer) in time:
-                compared.append((f"{name} against {peer}", time[name, peer] / ours, bar))
-        both_at_once = time[name, "pendax, value and gradient"]
-        compared.append((f"{name}, value against value and gradient", ours / both_at_once, 1 / 4))
-    return compared
+def ratios(points: list[Point]) -> list[results.Row]:
+    """Times as fast, at least."""
+    timing = {(point.work, point.method): point.timing for point in points}
+    bars = []
+    for name in dict.fromkeys(work for work, _ in timing if "gradient" not in work):
+        ours = timing[name, "pendax"]
+        for peer, limit in (("SciPy", 5), ("Boost", 1)):
+            if (name, peer) in timing:
+                ratio = timing[name, peer].over(ours)
+                bars.append(results.bar(f"{name} against {peer}", ratio, at_least=limit))
+        ratio = ours.over(timing[f"{name}, value and gradient", "pendax"])
+        bars.append(results.bar(f"{name}, value against value and gradient", ratio, at_least=1 / 4))
+    return bars

@@ -1,8 +1,7 @@
 """I–V curves: errors against 30 digits, and run times beside time stepping."""
 
-import time
+import warnings
 from functools import partial
-from pathlib import Path
 
 import fate_references
 import jax
@@ -12,28 +11,52 @@ from scipy.integrate import solve_ivp
 
 from pendax import FLUX_QUANTUM, JosephsonJunction, iv_curve, retrapping_torque
 
+from . import results
+from .compared import Point, losses, once, seconds, spent
+from .peers import library
 from .timing import side_by_side
 
-FOLDER = Path(__file__).parent / "results"
 IC, R = 112.5e-6, 8.0
 BETA_C = np.array([0.1, 1.0, 10.0, 100.0])
-CURRENTS = 50  # of the curve that peers draw as well
+WHY = {}  # of losses, which there were none
+
+
+def measure(seed: int, quick: bool) -> results.Tables:
+    scenes, rounds = (3, 3) if quick else (40, 5)
+    voltages = [still(seed, scenes), *shapiro(seed, scenes)]
+    four, curves = times(rounds, quick)
+    points = front(rounds, quick)
+    if not quick:
+        _draw(points)
+    return {
+        "voltages of random junctions": [
+            {"voltages": name, "scenes": scenes, "largest error": error}
+            for name, error, _ in voltages
+        ],
+        "I–V curves": curves,
+        "falling branch at β_c = 10": [
+            {
+                "method": point.method,
+                "setting": point.setting,
+                **spent(point.timing, "s"),
+                "error / Ic R": point.error,
+            }
+            for point in points
+        ],
+        "losses": losses(points, WHY),
+        "bars": [
+            *(results.bar(name, error, at_most=limit) for name, error, limit in voltages),
+            results.bar("currents up and down at four β_c, s", seconds(four), at_most=1),
+        ],
+    }
 
 
 def of_beta_c(beta_c):
     return JosephsonJunction(IC, R, beta_c * FLUX_QUANTUM / (2 * np.pi * IC * R**2))
 
 
-def report(seed: int, scenes: int, rounds: int, check: bool) -> int:
-    missed = still(seed, scenes)
-    missed += shapiro(seed, scenes)
-    missed += times(rounds)
-    front(rounds)
-    return 1 if check and missed else 0
-
-
-def still(seed: int, scenes: int) -> int:
-    """Voltages of the down branch from 0.1 % above Ir to 10 Ir, against a turn in Arb."""
+def still(seed: int, scenes: int) -> tuple[str, float, float]:
+    """Of the down branch from 0.1 % above Ir to 10 Ir, against a turn in Arb."""
     rng = np.random.default_rng(seed)
     off = []
     for _ in range(scenes):
@@ -43,12 +66,11 @@ def still(seed: int, scenes: int) -> int:
         volts = float(iv_curve(of_beta_c(beta_c), tau * IC).voltage_down)
         true = IC * R * beta * float(fate_references.mean_velocity(beta, tau))
         off.append(abs(volts / true - 1))
-    print(f"{scenes} voltages without a drive, seed {seed}: relative {max(off):.1e} (bar 1e-9)")
-    return int(max(off) > 1e-9)
+    return "without a drive, relative", max(off), 1e-9
 
 
-def shapiro(seed: int, scenes: int) -> int:
-    """Of first-order junctions: true error over the stated one, and over the height of a step."""
+def shapiro(seed: int, scenes: int) -> list[tuple[str, float, float]]:
+    """Of first-order junctions: true error over the height of a step, and over the stated one."""
     rng = np.random.default_rng(seed)
     share, off = [], []
     for _ in range(scenes):
@@ -61,29 +83,28 @@ def shapiro(seed: int, scenes: int) -> int:
         error = abs(float(curve.voltage_up) - true)
         off.append(error / step)
         share.append(error / (float(curve.error_up) + 4e-16 * abs(true) + 1e-30))
-    print(
-        f"{scenes} voltages under a drive, first order: {max(off):.1e} of a step (bar 1e-6), "
-        f"at most {max(share):.2f} of what is stated"
-    )
-    return int(max(off) > 1e-6 or max(share) > 1)
+    return [
+        ("under a drive, first order, over a step", max(off), 1e-6),
+        ("under a drive, over the error that is stated", max(share), 1),
+    ]
 
 
-def times(rounds: int) -> int:
-    current = np.linspace(0, 3, 200) * IC
-    four = side_by_side({"": partial(iv_curve, of_beta_c(BETA_C), current)}, rounds)[""]
+def times(rounds: int, quick: bool):
+    """Of four curves at once, and the rows of all."""
+    count = 20 if quick else 200
+    current = np.linspace(0, 3, count) * IC
     drive = IC, 0.5 * IC * R / FLUX_QUANTUM
+    still = {"β_c = 0.1, 1, 10, 100": partial(iv_curve, of_beta_c(BETA_C), current)}
     first, second = JosephsonJunction(IC, R), of_beta_c(1.0)
-    driven = side_by_side(
-        {
-            "first order": partial(iv_curve, first, current, drive=drive),
-            "β_c = 1": partial(iv_curve, second, current, drive=drive),
-        },
-        min(rounds, 3),
-    )
-    print(f"200 currents up and down at β_c = 0.1, 1, 10, 100: {four:.2f} s (bar 1 s)")
-    for name, seconds in driven.items():
-        print(f"200 currents under a drive, {name}: {seconds:.3g} s")
-    return int(four > 1)
+    driven = {"first order, under a drive": partial(iv_curve, first, current, drive=drive)}
+    if not quick:  # it takes longest to compile
+        driven["β_c = 1, under a drive"] = partial(iv_curve, second, current, drive=drive)
+    taken = side_by_side(still, rounds) | side_by_side(driven, 3)
+    rows = [
+        {"junction": name, "currents": count, **spent(timing, "s")}
+        for name, timing in taken.items()
+    ]
+    return next(iter(taken.values())), rows
 
 
 def by_scipy(beta, tau, span, method, rtol):
@@ -101,11 +122,8 @@ def by_scipy(beta, tau, span, method, rtol):
     return beta * np.array(found[::-1])
 
 
-def by_pyjjasim(beta, tau, span, dt):
+def by_pyjjasim(pyjjasim, beta, tau, span, dt):
     """All currents side by side, each coming down from 2.5 Ic."""
-    np.asscalar = lambda x: x.item()  # its release of 2022 still asks for it
-    import pyjjasim
-
     graph = pyjjasim.EmbeddedGraph([0.0, 1.0], [0.0, 0.0], [0], [1])
     circuit = pyjjasim.Circuit(graph, 1.0, 1.0, beta**-2)
     count = round(span / beta / dt)  # in units of ħ/2eIcR
@@ -119,44 +137,48 @@ def by_pyjjasim(beta, tau, span, dt):
     return (theta[:, -1] - theta[:, half]) / (dt * (count - 1 - half))
 
 
-def front(rounds: int) -> None:
-    """Largest error against run time, of the down branch at β_c = 10."""
-    beta = 10**-0.5
-    tau = np.linspace(1.01 * float(retrapping_torque(beta)), 2, CURRENTS)
+def front(rounds: int, quick: bool) -> list[Point]:
+    """Largest error and run time of the down branch at β_c = 10."""
+    beta, count = 10**-0.5, 6 if quick else 50
+    tau = np.linspace(1.01 * float(retrapping_torque(beta)), 2, count)
     true = np.array([float(fate_references.mean_velocity(beta, x)) * beta for x in tau])
-    points = {}
+    points = []
 
-    def note(name, call, seconds=None):
-        start = time.perf_counter()
-        found = np.asarray(call())
-        seconds = time.perf_counter() - start if seconds is None else seconds
-        points.setdefault(name, []).append((seconds, float(np.max(np.abs(found - true)))))
+    def note(method, timing, found, setting=""):
+        error = float(np.max(np.abs(np.asarray(found) - true)))
+        points.append(Point(f"{count} currents", method, timing, error, setting))
 
     def ours(dtype):
         junction = jax.tree.map(lambda x: jax.numpy.asarray(x, dtype), of_beta_c(10.0))
         current = jax.numpy.asarray(tau * IC, dtype)
         return lambda: iv_curve(junction, current).voltage_down / (IC * R)
 
-    for dtype in ("float64", "float32"):
-        seconds = side_by_side({"": ours(dtype)}, rounds)[""]
-        note(f"pendax, {dtype}", ours(dtype), seconds)
-    for span, method, rtol in (
+    calls = {dtype: ours(dtype) for dtype in ("float64", "float32")[: 1 if quick else 2]}
+    for dtype, timing in side_by_side(calls, rounds).items():
+        note("pendax", timing, calls[dtype](), dtype)
+    scripts = [
         (200, "RK45", 1e-3),
         (200, "DOP853", 1e-6),
         (1000, "DOP853", 1e-8),
-        (5000, "DOP853", 1e-10),
-    ):
-        note("SciPy, a script", partial(by_scipy, beta, tau, span, method, rtol))
-    for span, dt in ((200, 0.1), (1000, 0.05), (5000, 0.05), (5000, 0.02)):
-        note("pyjjasim", partial(by_pyjjasim, beta, tau, span, dt))
-    for name, rows in points.items():
-        for seconds, off in rows:
-            print(f"{name:18} {seconds:9.3g} s   error {off:.1e} Ic R")
-    _draw(points)
+    ]
+    for span, method, rtol in scripts[: 2 if quick else None]:
+        run = once(partial(by_scipy, beta, tau, span, method, rtol))
+        note("SciPy, a script", *run, f"{method}, rtol {rtol:.0e}, to t = {span}")
+    if (pyjjasim := _pyjjasim()) is not None:
+        for span, dt in [(200, 0.1), (1000, 0.05), (5000, 0.05), (5000, 0.02)][: 1 if quick else 4]:
+            run = once(partial(by_pyjjasim, pyjjasim, beta, tau, span, dt))
+            note("pyjjasim", *run, f"dt {dt:g}, to t = {span}")
+    return points
 
 
-def _draw(points) -> None:
+def _pyjjasim():
+    np.asscalar = lambda x: x.item()  # its release of 2022 still asks for it
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")
+        return library("pyjjasim")
 
+
+def _draw(points: list[Point]) -> None:
     from pendax import plot
 
     with plot.style():
@@ -170,7 +192,11 @@ def _draw(points) -> None:
                   label="first order, under a drive")  # fmt: skip
         left.set_title(r"$\beta_c = 10$, and Shapiro's steps")
         left.legend(loc="upper left")
-        methods = {name: tuple(zip(*rows, strict=True))[::-1] for name, rows in points.items()}
+        methods = {}
+        for point in points:
+            name = f"pendax, {point.setting}" if point.ours else point.method
+            methods.setdefault(name, []).append((point.error, point.timing.median))
+        methods = {name: tuple(zip(*rows, strict=True)) for name, rows in methods.items()}
         plot.work_precision(right, methods, error=r"largest error / $I_c R$")
-        right.set_title(f"{CURRENTS} currents of the falling branch")
-        figure.savefig(FOLDER / "junction.png")
+        right.set_title(f"{points[0].work} of the falling branch")
+        figure.savefig(results.FOLDER / "junction.png")

@@ -1,40 +1,84 @@
-// GSL and Boost on arguments from a file: `peers gsl|boost COUNT FILE` reads COUNT u and
-// COUNT m, prints the nanoseconds an element takes, and writes sn, cn, dn beside them.
-#include <chrono>
-#include <cstdio>
-#include <cstdlib>
-#include <string>
-#include <vector>
+// GSL or Boost on arrays, one core: every function takes COUNT elements of each column of `in`
+// and writes its columns to `out`.  Both take the modulus k = √m.
+#include <cmath>
+#include <limits>
 #ifdef WITH_GSL
+#include <gsl/gsl_errno.h>
 #include <gsl/gsl_sf_elljac.h>
+#include <gsl/gsl_sf_ellint.h>
 #else
+#include <boost/math/special_functions/ellint_1.hpp>
+#include <boost/math/special_functions/ellint_2.hpp>
+#include <boost/math/special_functions/ellint_3.hpp>
 #include <boost/math/special_functions/jacobi_elliptic.hpp>
 #endif
 
-int main(int, char **arguments) {
-    const std::size_t count = std::strtoull(arguments[1], nullptr, 10);
-    const std::string name = arguments[2];
-    std::vector<double> in(2 * count), out(3 * count);
-    std::FILE *file = std::fopen(name.c_str(), "rb");
-    if (!file || std::fread(in.data(), 8, in.size(), file) != in.size()) return 1;
-    std::fclose(file);
-    const double *u = in.data(), *m = u + count;
-    double *sn = out.data(), *cn = sn + count, *dn = cn + count;
-    double best = 1e300;
-    for (int round = 0; round < 5; ++round) {
-        const auto start = std::chrono::steady_clock::now();
-        for (std::size_t i = 0; i < count; ++i) {
+using In = const double *const *;
+using Out = double *const *;
+const double NONE = std::numeric_limits<double>::quiet_NaN();
+
+// NaN where the library gives an error.
+template <class F> void each(long count, double *out, F value) {
+    for (long i = 0; i < count; ++i) {
 #ifdef WITH_GSL
-            gsl_sf_elljac_e(u[i], m[i], sn + i, cn + i, dn + i);
+        gsl_sf_result result;
+        out[i] = value(i, &result) ? NONE : result.val;
 #else
-            sn[i] = boost::math::jacobi_elliptic(std::sqrt(m[i]), u[i], cn + i, dn + i);
-#endif
+        try {
+            out[i] = value(i);
+        } catch (...) {
+            out[i] = NONE;
         }
-        const std::chrono::duration<double, std::nano> spent = std::chrono::steady_clock::now() - start;
-        if (spent.count() / count < best) best = spent.count() / count;
+#endif
     }
-    std::printf("%.17g\n", best);
-    file = std::fopen((name + ".out").c_str(), "wb");
-    if (!file || std::fwrite(out.data(), 8, out.size(), file) != out.size()) return 1;
-    std::fclose(file);
+}
+
+extern "C" {
+#ifdef WITH_GSL
+void prepare() { gsl_set_error_handler_off(); }
+void ellipj(long count, In in, Out out) {
+    for (long i = 0; i < count; ++i)
+        if (gsl_sf_elljac_e(in[0][i], in[1][i], out[0] + i, out[1] + i, out[2] + i))
+            out[0][i] = NONE;
+}
+void ellipk(long count, In in, Out out) {
+    each(count, out[0], [=](long i, gsl_sf_result *result) {
+        return gsl_sf_ellint_Kcomp_e(std::sqrt(in[0][i]), GSL_PREC_DOUBLE, result);
+    });
+}
+void ellipkinc(long count, In in, Out out) {
+    each(count, out[0], [=](long i, gsl_sf_result *result) {
+        return gsl_sf_ellint_F_e(in[0][i], std::sqrt(in[1][i]), GSL_PREC_DOUBLE, result);
+    });
+}
+void ellipeinc(long count, In in, Out out) {
+    each(count, out[0], [=](long i, gsl_sf_result *result) {
+        return gsl_sf_ellint_E_e(in[0][i], std::sqrt(in[1][i]), GSL_PREC_DOUBLE, result);
+    });
+}
+#else
+namespace bm = boost::math;
+void prepare() {}
+void ellipj(long count, In in, Out out) {
+    each(count, out[0], [=](long i) {
+        return bm::jacobi_elliptic(std::sqrt(in[1][i]), in[0][i], out[1] + i, out[2] + i);
+    });
+}
+void ellipk(long count, In in, Out out) {
+    each(count, out[0], [=](long i) { return bm::ellint_1(std::sqrt(in[0][i])); });
+}
+void ellipkinc(long count, In in, Out out) {
+    each(count, out[0], [=](long i) { return bm::ellint_1(std::sqrt(in[1][i]), in[0][i]); });
+}
+void ellipeinc(long count, In in, Out out) {
+    each(count, out[0], [=](long i) { return bm::ellint_2(std::sqrt(in[1][i]), in[0][i]); });
+}
+void ellippi(long count, In in, Out out) {
+    each(count, out[0], [=](long i) { return bm::ellint_3(std::sqrt(in[1][i]), in[0][i]); });
+}
+void ellippiinc(long count, In in, Out out) {
+    each(count, out[0],
+         [=](long i) { return bm::ellint_3(std::sqrt(in[2][i]), in[0][i], in[1][i]); });
+}
+#endif
 }

@@ -1,15 +1,21 @@
 """The peers that are there: Python libraries, and GSL and Boost through a small driver."""
 
+import ctypes
 import importlib
 import subprocess
 import tempfile
+from collections.abc import Callable
+from functools import cache, partial
 from pathlib import Path
 from types import ModuleType
 
 import numpy as np
 
 DRIVER = Path(__file__).parent / "peers.cpp"
-THIRD_KIND = Path(__file__).parent / "third_kind.cpp"
+_RESULTS = {
+    "ellipj": 3,
+    **dict.fromkeys(("ellipk", "ellipkinc", "ellipeinc", "ellippi", "ellippiinc"), 1),
+}
 
 
 def library(name: str) -> ModuleType | None:
@@ -21,33 +27,44 @@ def library(name: str) -> ModuleType | None:
         return None
 
 
-def compiled(peer: str, u: np.ndarray, m: np.ndarray) -> tuple[float, list[np.ndarray]] | None:
-    """(seconds an element on one core, [sn, cn, dn]) of "GSL" or "Boost", best of five."""
+def compiled(function: str, columns: list[np.ndarray]) -> dict[str, Callable[[], np.ndarray]]:
+    """Calls that give the results, one below the other, by the name of the library; on one core."""
+    columns = [np.ascontiguousarray(x, float) for x in columns]
+    found = {}
+    for peer in ("GSL", "Boost"):
+        driver = _built(peer)
+        if driver is not None and hasattr(driver, function):
+            found[peer] = partial(_called, getattr(driver, function), _RESULTS[function], columns)
+    return found
+
+
+def _called(function, results: int, columns: list[np.ndarray]) -> np.ndarray:
+    out = np.empty((results, columns[0].size))
+    function(ctypes.c_long(columns[0].size), _pointers(columns), _pointers(out))
+    return out if results > 1 else out[0]
+
+
+def _pointers(rows) -> ctypes.Array:
+    return (ctypes.c_void_p * len(rows))(*(row.ctypes.data for row in rows))
+
+
+@cache
+def _built(peer: str) -> ctypes.CDLL | None:
     flags = ["-DWITH_GSL", "-lgsl", "-lgslcblas"] if peer == "GSL" else []
-    return _run(DRIVER, peer, flags, [u, m], 3)
-
-
-def third_kind(columns: list[np.ndarray]) -> tuple[float, list[np.ndarray]] | None:
-    """The same of Boost's Π(n | m) for columns n, m, and Π(n; φ | m) for n, φ, m."""
-    return _run(THIRD_KIND, "Boost", [f"-DCOLUMNS={len(columns)}"], columns, 1)
-
-
-def _run(source, peer, flags, columns, results) -> tuple[float, list[np.ndarray]] | None:
     with tempfile.TemporaryDirectory() as folder:
-        program, data = Path(folder) / "peers", Path(folder) / "data"
-        command = ["c++", "-O3", "-march=native", "-std=c++17", str(source), "-o", str(program)]
+        program = Path(folder) / "peers.so"
+        command = ["c++", "-O3", "-march=native", "-std=c++17", "-shared", "-fPIC", str(DRIVER)]
         try:
-            subprocess.run([*command, *flags, "-lm"], check=True, capture_output=True, text=True)
+            subprocess.run(
+                [*command, "-o", str(program), *flags, "-lm"],
+                check=True,
+                capture_output=True,
+                text=True,
+            )
         except (OSError, subprocess.CalledProcessError) as error:
             why = getattr(error, "stderr", None) or str(error)
             print(f"skipped: {peer}, whose driver does not build ({why.strip().splitlines()[0]})")
             return None
-        np.concatenate(columns).tofile(data)
-        done = subprocess.run(
-            [str(program), str(columns[0].size), str(data)],
-            check=True,
-            capture_output=True,
-            text=True,
-        )
-        values = np.fromfile(f"{data}.out").reshape(results, -1)
-        return float(done.stdout) * 1e-9, list(values)
+        driver = ctypes.CDLL(str(program))
+    driver.prepare()
+    return driver

@@ -9,44 +9,68 @@ import scipy.special
 
 from pendax import special
 
-from . import integrals
+from . import integrals, results, special_regions
 from .accuracy import EPS, complete_errors, jacobi_error
+from .compared import Point, an_element, losses, seconds, spent
 from .peers import compiled, library
-from .timing import Row, compile_time, side_by_side
+from .timing import Timing, compile_time, side_by_side
 
 SAMPLE = 2000  # elements whose error is looked at
+CEPHES = "Cephes: two polynomials and a logarithm; ours: twelve roots, one after another"
+WHY = {
+    f"{work}, SciPy": CEPHES for work in ("ellipk", "ellipk, random", "ellipk, near the separatrix")
+}
 
 
-def report(seed: int, size: int, rounds: int, check: bool) -> int:
+def measure(seed: int, quick: bool) -> results.Tables:
+    size, rounds = (2**14, 3) if quick else (2**20, 7)
     rng = np.random.default_rng(seed)
     u, m = rng.uniform(-20, 20, size), rng.uniform(0, 1, size)
-    device = jax.devices()[0]
-    print(f"{size} random elements, |u| < 20, 0 < m < 1, medians of {rounds}; {device.device_kind}")
-    rows = [
+    points = [
         *jacobi(u, m, rounds),
         *shared_parameter(u, rounds),
         *complete(m, rounds),
         *gradients(u, m, rounds),
     ]
-    more = integrals.speed(size, max(3, rounds // 3), seed)
-    print("\n| work | library | ns an element | max error, eps × scale |\n|---|---|---|---|")
-    for row in rows + more:
-        error = "" if row.error is None else f"{row.error:.2g}"
-        print(f"| {row.work} | {row.library} | {row.seconds * 1e9:.1f} | {error} |")
-    missed = bars(rows, integrals.ratios(more)) + compiling(u, m) + small_arrays()
-    return 1 if check and missed else 0
+    more = integrals.speed(size, max(3, rounds // 2), seed, quick)
+    regions = special_regions.regions(seed, quick)
+    if not quick:
+        special_regions.draw(regions)
+    small, of_small = small_arrays(quick)
+    compiling, of_compiling = compile_times(u, m, quick)  # forgets all programs: the last
+    return {
+        f"{size:,} elements: u in ±20, φ in ±10, all others in 0 … 1": [
+            {
+                "work": point.work,
+                "library": point.method,
+                **spent(point.timing, "ns"),
+                "error": point.error,
+            }
+            for point in points + more
+        ],
+        **special_regions.tables(regions),
+        "small arrays": small,
+        "compiling": compiling,
+        "losses": losses([*points, *more, *regions], WHY),
+        "bars": [
+            *ratios(points),
+            *integrals.ratios(more),
+            *of_small,
+            *of_compiling,
+            *special_regions.bars(regions),
+        ],
+    }
 
 
 def worst(u, m, values) -> float:
-    """The largest error of sn, cn, dn on a sample."""
+    """The largest error of sn, cn, dn on a sample; NaN if one is."""
     picked = slice(None, None, max(1, u.size // SAMPLE))
     columns = np.stack([np.asarray(x, float)[picked] for x in values[:3]], 1)
-    return max(
-        jacobi_error("m", *row)[0] for row in zip(u[picked], m[picked], columns, strict=True)
-    )
+    rows = zip(u[picked], m[picked], columns, strict=True)
+    return float(np.max([jacobi_error("m", *row)[0] for row in rows]))
 
 
-def jacobi(u, m, rounds) -> list[Row]:
+def jacobi(u, m, rounds) -> list[Point]:
     on_device = jnp.asarray(u), jnp.asarray(m)
     narrow = tuple(x.astype(jnp.float32) for x in on_device)
     ours, sines = jax.jit(special.ellipj), jax.jit(lambda x: (jnp.sin(x), jnp.cos(x)))
@@ -55,68 +79,62 @@ def jacobi(u, m, rounds) -> list[Row]:
         "pendax float32": partial(ours, *narrow),
         "SciPy": partial(scipy.special.ellipj, u, m),
         "jnp.sin, jnp.cos": partial(sines, on_device[0]),
+        **compiled("ellipj", [u, m]),
     }
     if (elliptic := library("elliptic")) is not None:
         calls["elliptic-functions"] = partial(jax.jit(elliptic.ellipj), *on_device)
-    spent = side_by_side(calls, rounds)
-    rows = []
+    timings = side_by_side(calls, rounds)
+    points = []
     for name, call in calls.items():
         error = None
         if name == "pendax float32":
             exact = (np.asarray(x, float) for x in narrow)
-            error = worst(*exact, call()) * EPS / np.finfo(np.float32).eps
+            error = worst(*exact, call()) * EPS / float(np.finfo(np.float32).eps)
         elif "jnp" not in name:
             error = worst(u, m, call())
-        rows.append(Row("ellipj", name, spent[name] / u.size, error))
-    for peer in ("GSL", "Boost"):
-        if (result := compiled(peer, u, m)) is not None:
-            rows.append(Row("ellipj", f"{peer}, one core", result[0], worst(u, m, result[1])))
+        points.append(Point("ellipj", name, an_element(timings[name], u.size), error))
     if (mpmath := library("mpmath")) is not None:
         few = [(x, y) for x, y in zip(u[:50].tolist(), m[:50].tolist(), strict=True)]
 
         def by_mpmath():
             return [[float(mpmath.ellipfun(f, x, m=y)) for f in ("sn", "cn", "dn")] for x, y in few]
 
-        seconds = side_by_side({"mpmath": by_mpmath}, 1)["mpmath"] / len(few)
-        values = np.array(by_mpmath()).T
-        rows.append(Row("ellipj", "mpmath", seconds, worst(u[:50], m[:50], values)))
-    return rows
+        timing = an_element(side_by_side({"": by_mpmath}, 3)[""], len(few))
+        error = worst(u[:50], m[:50], np.array(by_mpmath()).T)
+        points.append(Point("ellipj", "mpmath", timing, error))
+    return points
 
 
-def shared_parameter(u, rounds) -> list[Row]:
+def shared_parameter(u, rounds) -> list[Point]:
     m = 0.7
-    on_device = jnp.asarray(u)
     calls = {
-        "pendax": partial(jax.jit(special.ellipj), on_device, m),
+        "pendax": partial(jax.jit(special.ellipj), jnp.asarray(u), m),
         "SciPy": partial(scipy.special.ellipj, u, m),
     }
-    spent = side_by_side(calls, rounds)
-    shape = np.full(u.size, m)
+    timings = side_by_side(calls, rounds)
+    every = np.full(u.size, m)
     return [
-        Row("ellipj, one m", name, spent[name] / u.size, worst(u, shape, call()))
+        Point("ellipj, one m", name, an_element(timings[name], u.size), worst(u, every, call()))
         for name, call in calls.items()
     ]
 
 
-def complete(m, rounds) -> list[Row]:
+def complete(m, rounds) -> list[Point]:
     on_device = jnp.asarray(m)
     calls = {
         "pendax": partial(jax.jit(special.ellipk), on_device),
         "SciPy": partial(scipy.special.ellipk, m),
+        **compiled("ellipk", [m]),
     }
     if (jaxellip := library("jaxellip")) is not None:
         calls["jaxellip"] = partial(jax.jit(jaxellip.ellipk), on_device)
-    spent = side_by_side(calls, rounds)
+    timings = side_by_side(calls, rounds)
     picked = slice(None, None, max(1, m.size // 200))
-    return [
-        Row(
-            "ellipk",
-            name,
-            spent[name] / m.size,
-            max(complete_errors("ellipk", m[picked], np.asarray(call())[picked])),
-        )
-        for name, call in calls.items()
-    ]
+    points = []
+    for name, call in calls.items():
+        error = float(np.max(complete_errors("ellipk", m[picked], np.asarray(call())[picked])))
+        points.append(Point("ellipk", name, an_element(timings[name], m.size), error))
+    return points
 
 
 def value_and_gradient(u, m):
@@ -125,76 +143,69 @@ def value_and_gradient(u, m):
     return values, pullback(jax.tree.map(jnp.ones_like, values))
 
 
-def gradients(u, m, rounds) -> list[Row]:
+def gradients(u, m, rounds) -> list[Point]:
     on_device = jnp.asarray(u), jnp.asarray(m)
     calls = {
         "value": partial(jax.jit(special.ellipj), *on_device),
         "value and gradient": partial(jax.jit(value_and_gradient), *on_device),
     }
-    spent = side_by_side(calls, rounds)
-    return [Row(f"ellipj, {name}", "pendax", spent[name] / u.size, None) for name in calls]
+    timings = side_by_side(calls, rounds)
+    return [
+        Point(f"ellipj, {name}", "pendax", an_element(timings[name], u.size), None)
+        for name in calls
+    ]
 
 
-def bars(rows: list[Row], more: list[tuple[str, float, float]]) -> int:
-    """Prints each ratio beside its bar; the number that are missed."""
-    time = {(row.work, row.library): row.seconds for row in rows}
-    ours = time["ellipj", "pendax"]
-    ratios = [
-        ("ellipj against SciPy", time["ellipj", "SciPy"] / ours, 10),
-        ("ellipj against GSL", time.get(("ellipj", "GSL, one core"), np.nan) / ours, 2.5),
+def ratios(points: list[Point]) -> list[results.Row]:
+    """Times as fast, at least."""
+    timing = {(point.work, point.method): point.timing for point in points}
+
+    def over(peer, ours):
+        return timing[peer].over(timing[ours]) if peer in timing else np.nan
+
+    ours, both = ("ellipj", "pendax"), ("ellipj, value and gradient", "pendax")
+    rows = [
+        ("ellipj against SciPy", over(("ellipj", "SciPy"), ours), 10),
+        ("ellipj against GSL", over(("ellipj", "GSL"), ours), 2.5),
+        ("ellipj against elliptic-functions", over(("ellipj", "elliptic-functions"), ours), 30),
+        ("ellipj against jnp.sin, jnp.cos", over(("ellipj", "jnp.sin, jnp.cos"), ours), 1),
         (
             "ellipj, one m, against SciPy",
-            time["ellipj, one m", "SciPy"] / time["ellipj, one m", "pendax"],
+            over(("ellipj, one m", "SciPy"), ("ellipj, one m", "pendax")),
             20,
         ),
-        ("ellipj against jnp.sin, jnp.cos", time["ellipj", "jnp.sin, jnp.cos"] / ours, 1),
-        ("ellipk against SciPy", time["ellipk", "SciPy"] / time["ellipk", "pendax"], 2.5),
-        (
-            "value against value and gradient",
-            time["ellipj, value", "pendax"] / time["ellipj, value and gradient", "pendax"],
-            1 / 3,
-        ),
-        (
-            "ellipj against elliptic-functions",
-            time.get(("ellipj", "elliptic-functions"), np.nan) / ours,
-            30,
-        ),
-        *more,
+        ("ellipk against SciPy", over(("ellipk", "SciPy"), ("ellipk", "pendax")), 2.5),
+        ("value against value and gradient", over(("ellipj, value", "pendax"), both), 1 / 3),
     ]
-    print("\n| times as fast | measured | bar | |\n|---|---|---|---|")
-    missed = 0
-    for name, ratio, bar in ratios:
-        verdict = "met" if ratio >= bar else "skipped" if np.isnan(ratio) else "missed"
-        missed += verdict == "missed"
-        print(f"| {name} | {ratio:.2f} | {bar:.2g} | {verdict} |")
-    return missed
+    return [results.bar(name, ratio, at_least=limit) for name, ratio, limit in rows]
 
 
-def compiling(u, m) -> int:
-    print("\n| compiling | seconds | bar | |\n|---|---|---|---|")
-    missed = 0
-    for name, function, bar in (
+def compile_times(u, m, quick: bool) -> tuple[list[results.Row], list[results.Row]]:
+    rows, bars = [], []
+    for name, function, limit in (
         ("ellipj", special.ellipj, 1),
         ("ellipj, value and gradient", value_and_gradient, 3),
     ):
-        seconds = compile_time(function, jnp.asarray(u), jnp.asarray(m))
-        missed += seconds > bar
-        print(f"| {name} | {seconds:.2f} | {bar} | {'met' if seconds <= bar else 'missed'} |")
-    return missed
+        arguments = jnp.asarray(u), jnp.asarray(m)
+        timing = Timing(tuple(compile_time(function, *arguments) for _ in range(1 if quick else 3)))
+        rows.append({"work": name, **spent(timing, "s")})
+        bars.append(results.bar(f"compiling {name}, s", seconds(timing), at_most=limit))
+    return rows, bars
 
 
-def small_arrays() -> int:
-    print("\n| elements | ellipj, µs | jnp.sin, µs | at most 20 µs more |\n|---|---|---|---|")
-    missed = 0
+def small_arrays(quick: bool) -> tuple[list[results.Row], list[results.Row]]:
+    rows, bars = [], []
     for size in (1, 100, 1000):
         u = jnp.linspace(0.0, 5.0, size)
         calls = {
             "ellipj": partial(jax.jit(special.ellipj), u, 0.5 * jnp.ones(size)),
-            "sin": partial(jax.jit(jnp.sin), u),
+            "jnp.sin": partial(jax.jit(jnp.sin), u),
         }
-        spent = side_by_side(calls, 1000)
-        more = (spent["ellipj"] - spent["sin"]) * 1e6
-        missed += more > 20
-        ours, sine = spent["ellipj"] * 1e6, spent["sin"] * 1e6
-        print(f"| {size} | {ours:.0f} | {sine:.0f} | {'met' if more <= 20 else 'missed'} |")
-    return missed
+        timings = side_by_side(calls, 200 if quick else 1000)
+        for name, timing in timings.items():
+            rows.append({"elements": size, "work": name, **spent(timing, "µs")})
+        more = 1e6 * np.subtract(timings["ellipj"].samples, timings["jnp.sin"].samples)
+        low, middle, high = np.percentile(more, [5, 50, 95]).tolist()  # else the machine's pauses
+        more = {"ratio": middle, "from": low, "to": high}
+        bars.append(results.bar(f"ellipj of {size} over jnp.sin, µs more", more, at_most=20))
+    return rows, bars

@@ -8,15 +8,33 @@ import jax
 import numpy as np
 
 
-class Row(NamedTuple):
-    work: str
-    library: str
-    seconds: float  # an element
-    error: float | None  # largest, in eps × scale
+class Timing(NamedTuple):
+    """Seconds of one call, in the order of the rounds."""
+
+    samples: tuple[float, ...]
+
+    @property
+    def median(self) -> float:
+        return float(np.median(self.samples))
+
+    @property
+    def spread(self) -> float:
+        """How far a run may lie from the median: the farthest did, relative."""
+        low, high = min(self.samples), max(self.samples)
+        return max(high / self.median, self.median / low) - 1
+
+    def over(self, other: "Timing") -> dict[str, float]:
+        """The ratio of two that were timed in turn, and the least and largest of the rounds'."""
+        ratios = np.divide(self.samples, other.samples)
+        return {
+            "ratio": float(np.median(ratios)),
+            "from": float(ratios.min()),
+            "to": float(ratios.max()),
+        }
 
 
-def side_by_side(calls: dict[str, Callable], rounds: int) -> dict[str, float]:
-    """Median seconds of each call, one of each in turn, after one to warm up."""
+def side_by_side(calls: dict[str, Callable], rounds: int) -> dict[str, Timing]:
+    """Timings of each call, one of each in turn, after one to warm up."""
     spent: dict[str, list[float]] = {name: [] for name in calls}
     for call in calls.values():
         jax.block_until_ready(call())
@@ -25,7 +43,7 @@ def side_by_side(calls: dict[str, Callable], rounds: int) -> dict[str, float]:
             start = time.perf_counter()
             jax.block_until_ready(call())
             spent[name].append(time.perf_counter() - start)
-    return {name: float(np.median(times)) for name, times in spent.items()}
+    return {name: Timing(tuple(times)) for name, times in spent.items()}
 
 
 def compile_time(function: Callable, *arguments) -> float:

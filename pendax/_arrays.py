@@ -114,9 +114,14 @@ def tolerance(name: str, x: object) -> float | None:
 
 
 def difference_of_products(
-    a: Float[Array, "..."], b: Float[Array, "..."], c: Float[Array, "..."], d: Float[Array, "..."]
+    a: Float[Array, "..."],
+    b: Float[Array, "..."] | None,
+    c: Float[Array, "..."],
+    d: Float[Array, "..."],
 ) -> Float[Array, "..."]:
     """a b − c d to 2 eps of itself plus 4 eps² of a b, where nothing over- or underflows.
+
+    `b` may be `None` for 1.
 
     Every factor is cut into two halves by `lax.reduce_precision`, and every product of
     halves is exact: it makes no difference which of them the compiler fuses into
@@ -130,9 +135,15 @@ def difference_of_products(
         high = lax.reduce_precision(x, jnp.finfo(x.dtype).nexp, digits)
         return high, x - high
 
-    (a1, a2), (b1, b2), (c1, c2), (d1, d2) = map(halves, (a, b, c, d))
-    total, rest = a1 * b1, jnp.zeros_like(a)
-    for term in (-c1 * d1, a1 * b2, -c1 * d2, a2 * b1, -c2 * d1, a2 * b2, -c2 * d2):
+    (a1, a2), (c1, c2), (d1, d2) = map(halves, (a, c, d))
+    if b is None:
+        total, terms = a1, (-c1 * d1, -c1 * d2, a2, -c2 * d1, -c2 * d2)
+    else:
+        b1, b2 = halves(b)
+        total = a1 * b1
+        terms = (-c1 * d1, a1 * b2, -c1 * d2, a2 * b1, -c2 * d1, a2 * b2, -c2 * d2)
+    rest = jnp.zeros_like(a)
+    for term in terms:
         total, error = _two_sum(total, term)
         rest = rest + error
     return total + rest

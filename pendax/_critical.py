@@ -102,7 +102,7 @@ def fit_critical_law(
 
 def distance(v0: FloatArray, epsilon: FloatArray) -> tuple[FloatArray, Array]:
     """(t, below): t = ||v0| − 2√ε| to the last digit, for the floats as given."""
-    gap = difference_of_products(4 * epsilon, jnp.ones_like(v0), v0, v0)
+    gap = difference_of_products(4 * epsilon, None, v0, v0)
     return jnp.abs(gap) / (jnp.abs(v0) + 2 * jnp.sqrt(epsilon)), gap > 0
 
 

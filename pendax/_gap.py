@@ -91,7 +91,7 @@ def gap_of(four: FloatArray, v0: FloatArray, sin: FloatArray, cos: FloatArray) -
     (2√ε − v0)(2√ε + v0) would put the separatrix one float off.  cos² is used where it
     is the smaller of the two, else 1 − sin²: each loses nothing near its own zero.
     """
-    bottom = difference_of_products(four, jnp.ones_like(v0), v0, v0) - four * sin * sin
+    bottom = difference_of_products(four, None, v0, v0) - four * sin * sin
     top = difference_of_products(four * cos, cos, v0, v0)
     return jnp.where(cos * cos < sin * sin, top, bottom)
 
@@ -131,6 +131,13 @@ def scaled(epsilon: FloatArray, v0: FloatArray) -> tuple[FloatArray, FloatArray,
     _, exponent = jnp.frexp(lax.stop_gradient(speed))
     limit = jnp.finfo(v0.dtype).maxexp - 24  # both 2^±limit are normal numbers
     exponent = jnp.clip(exponent, -limit, limit)
-    one = jnp.ones_like(v0)
-    unit, inverse = jnp.ldexp(one, exponent), jnp.ldexp(one, -exponent)
+    unit, inverse = (_power_of_two(n, v0.dtype) for n in (exponent, -exponent))
     return unit, epsilon * inverse * inverse, v0 * inverse
+
+
+def _power_of_two(exponent, dtype) -> FloatArray:
+    """A normal number, by its bits: `jnp.ldexp` calls a power function."""
+    bits = jnp.finfo(dtype)
+    whole = jnp.int64 if bits.bits == 64 else jnp.int32
+    biased = exponent.astype(whole) + (bits.maxexp - 1)
+    return lax.bitcast_convert_type(biased << bits.nmant, dtype)

@@ -228,5 +228,6 @@ def _enough(pendulum: Pendulum, span, v0) -> int:
         return 2**20
     epsilon, beta, tau, v0, span = _together(*terms, span)
     with jax.ensure_compile_time_eval():
-        steps = budget(Scene(epsilon, beta, tau), State(v0, v0), span)
+        # A single program: its operations one by one would be ten to compile.
+        steps = jax.jit(budget)(Scene(epsilon, beta, tau), State(v0, v0), span)
         return 2 ** int(np.clip(np.ceil(np.log2(10 * float(np.max(np.asarray(steps))))), 16, 24))

@@ -4,6 +4,8 @@ import equinox as eqx
 import jax
 from jaxtyping import Array, Bool
 
+from ._arrays import concrete
+
 
 class Result(eqx.Enumeration):
     """`==` compares lane by lane; printing one shows its message."""
@@ -25,3 +27,9 @@ def where(condition: Bool[Array, "*lanes"], then: Result, otherwise: Result) -> 
     for _ in range(condition.ndim):
         select = jax.vmap(select, in_axes=(0, None, None))
     return select(condition, then, otherwise)
+
+
+def raise_if(x: Array, failed: Bool[Array, "..."], message: str) -> Array:
+    """`eqx.error_if`: a program of its own, which no cache keeps, unless all is seen to be well."""
+    seen = concrete(failed)
+    return x if seen is not None and not seen.any() else eqx.error_if(x, failed, message)

@@ -13,7 +13,7 @@ from ._arrays import aligned, common, concrete, require, tolerance, whole, widen
 from ._method import choose
 from ._motion import motion
 from ._pendulum import Pendulum, require_free
-from ._results import Result, where
+from ._results import Result, raise_if, where
 from ._torque import SampledTorque
 
 
@@ -198,6 +198,24 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
             ts, empty, empty, where(none, Result.successful, Result.successful), {}, method.name
         )
 
+    times, theta, v, result, stats = _solved(pendulum, ts, lanes, method)
+    if throw:
+        for how, cure in _CURES:
+            theta = raise_if(theta, result == how, f"{Result[how]} {cure}")
+    return Trajectory(times, theta, v, result, stats, method.name)
+
+
+_CURES = (
+    (Result.too_many_steps, "Raise `max_steps`, or `rtol`; `throw=False` says in which lane."),
+    (Result.too_stiff, "Use `solver=diffrax.Kvaerno5()`; `throw=False` says in which lane."),
+    (Result.solver_failed, "`throw=False` says in which lane, and has NaN from there on."),
+)
+
+
+@eqx.filter_jit
+def _solved(pendulum, ts, lanes, method):
+    """One program, compiled once for all calls alike: of many small ones each takes its time."""
+    shape, dtype = lanes["v0"].shape, jnp.result_type(ts, lanes["v0"])
     # A lane without an answer must not keep the others waiting.
     bad = ~jnp.all(jnp.stack([jnp.isfinite(x) for x in lanes.values()]), 0)
     bad = bad | ~jnp.all(jnp.isfinite(ts)) | (lanes["epsilon"] <= 0)
@@ -210,43 +228,28 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     wrong = sum(jnp.where(bad, x, 0) for x in lanes.values())
     wrong = (wrong * jnp.where(bad, jnp.nan, jnp.zeros_like(wrong))).reshape(-1, 1)
     lanes = {name: jnp.where(bad, rest[name], x) for name, x in lanes.items()}
-
     times = jnp.where(jnp.all(jnp.isfinite(ts)), ts, 0).astype(dtype)
-    flat = {name: x.astype(dtype).reshape(-1) for name, x in lanes.items()}
-    theta, v, result, stats = _solved(pendulum, jnp.atleast_1d(times), flat, method)
-    bad = bad.reshape(-1)
-    # A factor, that derivatives are NaN as well.
-    lost = jnp.where(jnp.isinf(theta), jnp.nan, jnp.ones_like(theta))
-    theta, v = theta * lost + wrong, v * lost + wrong
-    result = jax.vmap(Result.where, in_axes=(0, None, 0))(bad, Result.not_a_number, result)
-    if throw:
-        for how, cure in _CURES:
-            theta = eqx.error_if(theta, result == how, f"{Result[how]} {cure}")
-    restored = partial(jnp.reshape, shape=shape + ts.shape)
-    by_lane = partial(jax.tree.map, lambda x: x.reshape(shape))
-    theta, v = restored(theta), restored(v)
-    return Trajectory(times, theta, v, by_lane(result), by_lane(stats), method.name)
-
-
-_CURES = (
-    (Result.too_many_steps, "Raise `max_steps`, or `rtol`; `throw=False` says in which lane."),
-    (Result.too_stiff, "Use `solver=diffrax.Kvaerno5()`; `throw=False` says in which lane."),
-    (Result.solver_failed, "`throw=False` says in which lane, and has NaN from there on."),
-)
-
-
-@eqx.filter_jit
-def _solved(pendulum, times, lanes, method):
-    """Compiled once for all calls alike."""
 
     def one(lane):
         terms = {name: lane[name] for name in ("epsilon", "beta", "tau", "dry") if name in lane}
         scene = eqx.tree_at(
             lambda p: [getattr(p, name) for name in terms], pendulum, list(terms.values())
         )
-        return method(scene, times, lane["v0"], lane["theta0"], lane["t0"])
+        at = jnp.atleast_1d(times), lane["v0"], lane["theta0"], lane["t0"]
+        return method(scene, *at)
 
-    return jax.vmap(one)(lanes)
+    flat = {name: x.astype(dtype).reshape(-1) for name, x in lanes.items()}
+    theta, v, result, stats = jax.vmap(one)(flat)
+    # A factor, that derivatives are NaN as well; each its own, or v alone would need all of θ.
+    lost = (jnp.where(jnp.isinf(x), jnp.nan, jnp.ones_like(x)) for x in (theta, v))
+    theta, v = (
+        jnp.reshape(x * factor + wrong, shape + ts.shape)
+        for x, factor in zip((theta, v), lost, strict=True)
+    )
+    select = jax.vmap(Result.where, in_axes=(0, None, 0))
+    result = select(bad.reshape(-1), Result.not_a_number, result)
+    by_lane = partial(jax.tree.map, lambda x: x.reshape(shape))
+    return times, theta, v, by_lane(result), by_lane(stats)
 
 
 def require_monotone(ts, t0) -> None:

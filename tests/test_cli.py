@@ -1,13 +1,16 @@
 """The command line as a user meets it: one process a run, real files."""
 
 import csv
+import os
 import subprocess
 import sys
 
+import jax
 import numpy as np
 import pytest
 
 from pendax.cli import main
+from pendax.cli._cache import keep_programs
 from pendax.cli._error import UserError
 from pendax.cli._output import output_folder
 from pendax.cli._recording import read_recording
@@ -205,3 +208,62 @@ def test_measured_swing_of_the_record(shared, tmp_path, capsys):
     assert main([*arguments, "--window", "1e-9", "1e-5", "--out", str(tmp_path / "o")]) == 0
     small = next(x for x in capsys.readouterr().out.splitlines() if x.startswith("small-angle"))
     assert 0.5731 < float(small.split("=")[1].split("±")[0]) < 0.5746
+
+
+@pytest.mark.skipif(sys.platform in ("win32", "darwin"), reason="other places for caches")
+def test_cache_is_filled_and_used(tmp_path):
+    command = [sys.executable, "-m", "pendax", "sweep", "--cache", "--quiet", "--count", "200"]
+    command += ["--window", "1e-9", "1", "--out", str(tmp_path / "out")]
+    plain = {k: v for k, v in os.environ.items() if not k.startswith("JAX_")}
+    plain["XDG_CACHE_HOME"] = str(tmp_path / "home")
+    folder = tmp_path / "home" / "pendax"
+
+    def run(**environment):
+        environment = plain | environment
+        run = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+        assert run.returncode == 0, run.stderr
+        return run.stderr, sorted(path.name for path in folder.iterdir())
+
+    said, kept = run()
+    assert said == ""
+    assert any(name.startswith("jit__evaluate") for name in kept)
+    said, still = run(JAX_EXPLAIN_CACHE_MISSES="1")
+    assert "PERSISTENT COMPILATION CACHE MISS" not in said
+    assert "Not writing" not in said  # what calls back to Python
+    assert still == kept
+
+
+@pytest.fixture
+def settings(monkeypatch):
+    """JAX's, as they were before."""
+    names = ("compilation_cache_dir", *(f"persistent_cache_min_{x}" for x in CACHE_LIMITS))
+    before = {f"jax_{name}": getattr(jax.config, f"jax_{name}") for name in names}
+    for name in before:
+        monkeypatch.delenv(name.upper(), raising=False)
+    yield monkeypatch
+    for name, value in before.items():
+        jax.config.update(name, value)
+
+
+CACHE_LIMITS = ("compile_time_secs", "entry_size_bytes")
+
+
+def test_cache_where_jax_has_its_own(settings, tmp_path):
+    settings.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path / "mine"))
+    settings.setenv("JAX_PERSISTENT_CACHE_MIN_ENTRY_SIZE_BYTES", "100")
+    before = jax.config.jax_persistent_cache_min_entry_size_bytes
+    keep_programs()
+    assert jax.config.jax_compilation_cache_dir == str(tmp_path / "mine")
+    assert jax.config.jax_persistent_cache_min_compile_time_secs == 0
+    assert jax.config.jax_persistent_cache_min_entry_size_bytes == before
+
+
+def test_cache_that_can_not_be_written(settings, tmp_path, capsys):
+    (tmp_path / "file").write_text("mine")
+    settings.setenv("JAX_COMPILATION_CACHE_DIR", str(tmp_path / "file" / "sub"))
+    keep_programs()
+    said = capsys.readouterr().err
+    assert said.startswith("pendax: no cache: ")
+    assert str(tmp_path / "file" / "sub") in said
+    assert said.count("\n") == 1
+    assert jax.config.jax_compilation_cache_dir is None

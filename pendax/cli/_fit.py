@@ -106,7 +106,8 @@ def _fitted(recording: Recording, arguments: argparse.Namespace) -> "Fit[Pendulu
     options: dict[str, Any] = {"starts": arguments.starts, "unwrap": arguments.unwrap}
     if arguments.offset:
         options["offset"] = 0.0
-    hidden = True if arguments.quiet else None  # None: hidden unless on a terminal
+    # None: hidden unless on a terminal.  What calls back to a bar is in no cache.
+    hidden = True if arguments.quiet or arguments.cache else None
     try:
         guess = _guess(recording, arguments)
         if arguments.sigma is not None:
@@ -120,7 +121,7 @@ def _fitted(recording: Recording, arguments: argparse.Namespace) -> "Fit[Pendulu
                 recording.theta,
                 guess,
                 velocity=recording.velocity,
-                progress=bar.update,
+                progress=None if bar.disable else bar.update,
                 **options,
             )
     except ValueError as error:

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from importlib.metadata import version
 from typing import NoReturn
 
-from . import _claims, _figures, _fit, _iv, _sweep
+from . import _cache, _claims, _figures, _fit, _iv, _sweep
 from ._error import UserError
 
 _COMMANDS = {"sweep": _sweep, "figures": _figures, "report": _claims, "fit": _fit, "iv": _iv}
@@ -25,6 +25,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = _parser()
     try:
         arguments = parser.parse_args(argv)
+        if arguments.cache:
+            _cache.keep_programs()
         arguments.run(arguments)
         sys.stdout.flush()
     except BrokenPipeError:  # the reader, `head` say, has seen enough
@@ -62,5 +64,6 @@ def _parser() -> argparse.ArgumentParser:
             formatter_class=argparse.RawDescriptionHelpFormatter,
         )
         module.add_arguments(command)
+        command.add_argument("--cache", action="store_true", help=_cache.HELP)
         command.set_defaults(run=module.run)
     return parser

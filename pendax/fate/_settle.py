@@ -10,7 +10,7 @@ from jaxtyping import Array, ArrayLike, Float, Int
 
 from .._arrays import common, tolerance, whole
 from .._pendulum import Pendulum
-from .._results import Result
+from .._results import Result, raise_if
 from ..taylor import Scene, State
 from ._follow import CAPTURED, GOING, RUNNING, follow, is_captured
 from ._rest import rest as at_rest
@@ -106,7 +106,7 @@ def settle(
     if throw:
         unsettled = found.result == Result.unsettled
         message = f"{Result[Result.unsettled]} `throw=False` says in which lane."
-        found = eqx.tree_at(lambda x: x.time, found, eqx.error_if(found.time, unsettled, message))
+        found = eqx.tree_at(lambda x: x.time, found, raise_if(found.time, unsettled, message))
     return found
 
 

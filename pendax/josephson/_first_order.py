@@ -36,7 +36,7 @@ def phase_after(tau: FloatArray, s: FloatArray, phase0: FloatArray):
 
     # Each with numbers of its own where it is not asked.
     x = jnp.where(near, q, 0)
-    root = jnp.sqrt(jnp.where(above, -square, 1))
+    root = jnp.sqrt(jnp.where(square < 0, -square, 1))  # of the junction alone, not of the time
     angle = jnp.where(above, 0.5 * root * s, 0)
     half_turns = jnp.round(angle / np.pi)
     angle = angle - half_turns * np.pi
@@ -47,7 +47,7 @@ def phase_after(tau: FloatArray, s: FloatArray, phase0: FloatArray):
     turned = jnp.arctan2(b, a) + jnp.sign(tau) * np.pi * half_turns
     phase, rate = phase0 + 2 * turned, start / (a * a + b * b)
 
-    settling = _settling(jnp.where(below, tau, 0), jnp.where(below, s, 1), phase0)
+    settling = _settling(jnp.where(square > 0, tau, 0), jnp.where(below, s, 1), phase0)
     return tuple(jnp.where(below, x, y) for x, y in zip(settling, (phase, rate), strict=True))
 
 

@@ -17,7 +17,7 @@ import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
-from ..taylor._columns import no_tangent, unit_tangents
+from ..taylor._columns import no_tangent, replaced, unit_tangents
 
 FloatArray = Float[Array, "..."]
 # y' = field(t, y, p) from y(0) = start(p); y a vector, p a list of arrays.
@@ -64,8 +64,11 @@ def _with_slopes(field: Field, start: Start, moving: list[int], size: int) -> tu
         if not moving:
             return field(t, y, p)
 
+        def of_moving(y, moved):
+            return field(t, y, replaced(p, moving, moved))
+
         def along(dy, dp):
-            return jax.jvp(lambda y, p: field(t, y, p), (y, p), (dy, dp))
+            return jax.jvp(of_moving, (y, [p[i] for i in moving]), (dy, dp))
 
         values, changes = jax.vmap(along, out_axes=(None, 0))(slopes, unit_tangents(moving, p))
         return jnp.concatenate([values, changes.ravel()])
@@ -73,9 +76,12 @@ def _with_slopes(field: Field, start: Start, moving: list[int], size: int) -> tu
     def wider_start(p):
         if not moving:
             return start(p)
-        values, changes = jax.vmap(lambda dp: jax.jvp(start, (p,), (dp,)), out_axes=(None, 0))(
-            unit_tangents(moving, p)
-        )
+
+        def along(dp):
+            at = [p[i] for i in moving]
+            return jax.jvp(lambda moved: start(replaced(p, moving, moved)), (at,), (dp,))
+
+        values, changes = jax.vmap(along, out_axes=(None, 0))(unit_tangents(moving, p))
         return jnp.concatenate([values, changes.ravel()])
 
     return wider_field, wider_start

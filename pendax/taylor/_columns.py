@@ -47,24 +47,33 @@ def by_columns(
 
 
 def _with_columns(f, moving: list[int], p: Parameters):
-    """`f(p)` and ∂f/∂p_k, on a last axis, p_k the elements of the `moving` arrays."""
+    """`f(p)` and ∂f/∂p_k, on a last axis, p_k the elements of the `moving` arrays.
+
+    The others have no tangents: zeros would be carried through every step, as numbers.
+    """
+
+    def of_moving(moved):
+        return f(replaced(p, moving, moved))
 
     def along(dp):
-        y, dy, said = jax.jvp(f, (p,), (dp,), has_aux=True)
+        y, dy, said = jax.jvp(of_moving, ([p[i] for i in moving],), (dp,), has_aux=True)
         return (y, dy), said
 
     return jax.vmap(along, out_axes=((None, -1), None))(unit_tangents(moving, p))
 
 
+def replaced(p: Parameters, moving: list[int], moved: Parameters) -> Parameters:
+    """`p` with others in the place of the `moving` arrays."""
+    at = dict(zip(moving, moved, strict=True))
+    return [at.get(i, x) for i, x in enumerate(p)]
+
+
 def unit_tangents(moving: list[int], p: Parameters) -> Parameters:
-    """Tangents of `p` in each direction of the `moving` arrays' elements, stacked."""
+    """Tangents of the `moving` arrays in each direction of their elements, stacked."""
     sizes = [p[i].size for i in moving]
     ends = [sum(sizes[: k + 1]) for k in range(len(sizes) - 1)]
     units = jnp.split(jnp.eye(sum(sizes), dtype=p[0].dtype), ends, axis=1)
-    stacked = [jnp.zeros((sum(sizes), *x.shape), x.dtype) for x in p]
-    for i, unit in zip(moving, units, strict=True):
-        stacked[i] = unit.reshape(-1, *p[i].shape)
-    return stacked
+    return [unit.reshape(-1, *p[i].shape) for i, unit in zip(moving, units, strict=True)]
 
 
 def no_tangent(x):

@@ -1,0 +1,109 @@
+"""Sweeps of v0: time a lane, compile time and memory, for one lane to tens of thousands.
+
+θ(t) of a free pendulum, of a damped and driven one, and under a periodic torque; beside diffrax's
+Dopri8 under `vmap`, heyoka and a loop around SciPy, all at the tolerance 1e-8.  Memory is what the
+compiled program asks for: its arguments, its result, and what it needs on the way.
+"""
+
+from collections.abc import Callable
+from functools import partial
+
+import diffrax as dfx
+import jax
+import jax.numpy as jnp
+import numpy as np
+
+from . import methods, results
+from .problems import Problem
+from .timing import Timing, side_by_side
+
+RTOL = 1e-8
+
+
+def measure(seed: int, quick: bool) -> results.Tables:
+    rng = np.random.default_rng(seed)
+    lanes = (1024,) if quick else (1, 32, 1024, 32_768)
+    v0 = rng.uniform(0.1, 4.0, max(lanes))
+    rows, bars = [], []
+    for problem in scenes(v0)[: 2 if quick else 3]:
+        per_lane = {}
+        for count in lanes:
+            given = jnp.asarray(v0[:count])
+            programs = {"pendax": ours(problem), "diffrax": dopri8(problem)}
+            built = {name: _compiled(run, given) for name, run in programs.items()}
+            calls = {name: partial(one[0], given) for name, one in built.items()}
+            calls |= peers(problem, v0[:count])
+            spent = side_by_side(calls, 3)
+            for name, timing in spent.items():
+                each = Timing(tuple(s / count for s in timing.samples))
+                per_lane[name, count] = timing
+                seconds, memory = built[name][1:] if name in built else (None, None)
+                rows.append({
+                    "scene": problem.name, "by": name, "lanes": count, "µs": each.median * 1e6,
+                    "spread": each.spread, "compiling, s": seconds, "bytes a lane": memory,
+                })  # fmt: skip
+        print(f"{problem.name}: {len(lanes)} sizes", flush=True)
+        most = max(lanes)
+        ratio = per_lane["pendax", most].over(per_lane["diffrax", most])
+        bars.append(results.bar(f"{problem.name}, {most} lanes: over diffrax", ratio, at_most=1))
+    draw(rows, quick)
+    return {"sweeps": rows, "bars": bars}
+
+
+def scenes(v0) -> list[Problem]:
+    return [
+        Problem("free", v0, 10.0),
+        Problem("damped and driven", v0, 40.0, beta=0.16, tau=0.15),
+        Problem("periodic torque", v0, 40.0, beta=0.5, tau=0.9, wave=(0.4, 0.6)),
+    ]
+
+
+def ours(problem: Problem) -> Callable:
+    free = problem.beta is None
+    return methods.simulated(problem, None if free else RTOL)
+
+
+def dopri8(problem: Problem) -> Callable:
+    return partial(methods.diffeqsolve(problem, dfx.Dopri8()), RTOL)
+
+
+def _compiled(run: Callable, v0) -> tuple[Callable, float, float]:
+    """The program, seconds to compile it without a cache, and its bytes a lane."""
+    import time
+
+    jax.clear_caches()
+    start = time.perf_counter()
+    program = jax.jit(run).lower(v0).compile()
+    seconds = time.perf_counter() - start
+    memory = program.memory_analysis()
+    size = memory.argument_size_in_bytes + memory.output_size_in_bytes
+    return program, seconds, (size + memory.temp_size_in_bytes) / len(v0)
+
+
+def peers(problem: Problem, v0) -> dict[str, Callable]:
+    few = Problem(problem.name, v0, problem.t, beta=problem.beta, tau=problem.tau,
+                  wave=problem.wave)  # fmt: skip
+    calls = {}
+    for method in methods.by_heyoka(few, (RTOL,)):
+        if method.lanes == len(v0):
+            calls[method.name.split(",")[0]] = method.call  # batches, where they fill up
+    if len(v0) <= 32:
+        calls["SciPy"] = next(m.call for m in methods.by_scipy(few, {"DOP853": (RTOL,)}, len(v0)))
+    return calls
+
+
+def draw(rows, quick: bool) -> None:
+    from pendax.plot import new_figure, style
+
+    names = list(dict.fromkeys(row["scene"] for row in rows))
+    with style():
+        figure = new_figure(4.4 * len(names), 4.2)
+        for ax, scene in zip(figure.subplots(1, len(names)), names, strict=True):
+            for by, mark in zip(("pendax", "diffrax", "heyoka", "SciPy"), "os^D", strict=True):
+                mine = [row for row in rows if row["scene"] == scene and row["by"] == by]
+                ax.loglog([r["lanes"] for r in mine], [r["µs"] for r in mine], mark + "-", label=by)
+            ax.set(title=scene, xlabel="lanes", ylabel="run time of a lane / µs")
+        ax.legend()
+        folder = results.QUICK if quick else results.FOLDER
+        folder.mkdir(parents=True, exist_ok=True)
+        figure.savefig(folder / "sweeps.png")

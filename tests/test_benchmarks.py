@@ -1,0 +1,78 @@
+"""The benchmarks' own arithmetic: timings, bars, what differs, references, the README's blocks."""
+
+from pathlib import Path
+
+import damped_references
+import numpy as np
+import pytest
+
+from benchmarks import problems, results
+from benchmarks.timing import Timing, side_by_side
+
+ROOT = Path(__file__).parent.parent
+
+
+def test_timings_are_of_the_calls():
+    """Each call once to warm up and once a round, in turn; ratios round by round."""
+    order = []
+    found = side_by_side({"a": lambda: order.append("a"), "b": lambda: order.append("b")}, 3)
+    assert order == list("ababababab"[:2]) + list("ababab")
+    assert all(len(timing.samples) == 3 for timing in found.values())
+    ratio = Timing((2.0, 3.0, 8.0)).over(Timing((1.0, 1.0, 2.0)))
+    assert ratio == {"ratio": 3.0, "from": 2.0, "to": 4.0}
+    assert Timing((1.0, 2.0, 3.0)).spread == 1.0  # the shortest was half of the median
+
+
+def test_bars():
+    assert results.bar("x", 1.0, at_most=1.0)["verdict"] == "met"
+    assert results.bar("x", 1.1, at_most=1.0)["verdict"] == "missed"
+    assert results.bar("x", 0.9, at_least=1.0)["verdict"] == "missed"
+    assert results.bar("x", float("nan"), at_least=1.0)["verdict"] == "skipped"
+    row = results.bar("x", Timing((2.0, 4.0)).over(Timing((1.0, 1.0))), at_most=1.0)
+    assert (row["measured"], row["from"], row["to"]) == (3.0, 2.0, 4.0)
+    assert results.missed({"bars": [row]}) == ["x"]
+    with pytest.raises(ValueError, match="at_most"):
+        results.bar("x", 1.0)
+
+
+def test_what_differs(capsys):
+    """Errors exactly, times and ratios by their spread."""
+    old = {
+        "a": [{"error": 1e-10, "µs": 10.0, "spread": 0.2}],
+        "b": [{"ratio": 2.0, "from": 1.8, "to": 2.2}],
+    }
+    assert results.differ(old, old) == 0
+    slower = {**old, "a": [{"error": 1e-10, "µs": 11.9, "spread": 0.0}]}
+    assert results.differ(old, slower) == 0
+    assert results.differ(old, {**old, "a": [{"error": 1e-10, "µs": 12.1, "spread": 0.0}]}) == 1
+    wrong = {**old, "a": [{"error": np.nextafter(1e-10, 1), "µs": 10.0, "spread": 0.2}]}
+    assert results.differ(old, wrong) == 1
+    assert results.differ(old, {**old, "b": [{"ratio": 2.5, "from": 2.3, "to": 2.6}]}) == 1
+    assert results.differ(old, {**old, "b": [{"ratio": 2.3, "from": 2.1, "to": 2.6}]}) == 0
+    assert results.differ(old, {"a": old["a"]}) == 1
+    assert "error" in capsys.readouterr().out
+
+
+def test_markdown():
+    rows = [{"x": 0.123456, "name": None}, {"x": 123.4, "name": "a"}, {"x": 1e-9, "name": "b"}]
+    lines = results.markdown(rows).split("\n")
+    assert lines[0] == "| x | name |"
+    assert lines[2:] == ["| 0.12 |  |", "| 120 | a |", "| 1e-09 | b |"]
+
+
+def test_reference_of_a_periodic_torque():
+    """Without the wave it is the Taylor series in Arb; with it, a step half as long agrees."""
+    found = problems._waved(0.5, 0.9, (0.0, 0.6), 0.3, 1.1, 6.0)
+    true = damped_references.trajectory(1.0, 0.5, 0.9, 0.3, 1.1, [6.0])[0][0]
+    np.testing.assert_allclose(found, true, rtol=1e-15)
+    import mpmath
+
+    with mpmath.workdps(30):
+
+        def force(t, y):
+            return [y[1], 0.9 + 0.4 * mpmath.cos(0.6 * t) - 0.5 * y[1] - mpmath.sin(y[0])]
+
+        start = [mpmath.mpf(0.3), mpmath.mpf(1.1)]
+        long, short = (problems._extrapolated(force, mpmath.mpf(6), start, step=h)[0]
+                       for h in (0.25, 0.125))  # fmt: skip
+        assert abs(long - short) < 1e-18
