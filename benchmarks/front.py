@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterable
 
+import jax
 import numpy as np
 
 from . import methods, results
@@ -56,7 +57,7 @@ def points(problem: str, of: Iterable[Method], truth: Callable, floor: float, si
 def _once(call) -> Timing:
     """Of what takes tens of seconds: no warming up, and the one run stands for all rounds."""
     start = time.perf_counter()
-    call()
+    jax.block_until_ready(call())
     return Timing((time.perf_counter() - start,) * ROUNDS)
 
 
@@ -71,13 +72,14 @@ def _floor(problem, true) -> float:
 
 def losses(rows, timings: list[Timing], floor: float) -> list[results.Row]:
     """For each peer, where it is fastest in comparison at an error that no faster point of ours
-    has; errors below `floor` are equal.  A ratio below 1: pendax takes 1/ratio times as long."""
+    has; errors below `floor` are equal, and such as differ by a tenth.  A ratio below 1: pendax
+    takes 1/ratio times as long."""
     mine = [i for i, row in enumerate(rows) if row["method"].startswith("pendax")]
     worst = {}
     for i, row in enumerate(rows):
         if i in mine or np.isnan(row["error"]):
             continue
-        able = [j for j in mine if rows[j]["error"] <= max(row["error"], floor)]
+        able = [j for j in mine if rows[j]["error"] <= max(1.1 * row["error"], floor)]
         if able:
             best = min(able, key=lambda j: timings[j].median)
             ratio = timings[i].over(timings[best])
@@ -142,22 +144,31 @@ def draw(
     if not rows:
         return
     problems = list(dict.fromkeys(row["problem"] for row in rows))
+    names = sorted({row["method"] for row in rows}, key=_family)  # alike in every panel
     columns = min(2, len(problems))
     lines = -(-len(problems) // columns)
     with style():
-        figure = new_figure(6.2 * columns, 4.4 * lines)
+        figure = new_figure(6.2 * columns, 4.2 * lines + 0.9)
         panels = np.ravel(figure.subplots(lines, columns))
         for ax in panels[len(problems) :]:
             ax.set_axis_off()
         for ax, problem in zip(panels, problems, strict=False):
-            points = {}
+            points = {name: [] for name in names}
             for row in rows:
                 if row["problem"] == problem and row["error"] == row["error"]:
-                    points.setdefault(row["method"], []).append((row["error"] or EPS, row["µs"]))
-            lines_of = {k: tuple(zip(*sorted(v), strict=True)) for k, v in points.items()}
+                    points[row["method"]].append((row["error"] or EPS, row["µs"]))
+            lines_of = {name: np.reshape(sorted(x), (-1, 2)).T for name, x in points.items()}
             work_precision(ax, lines_of, error=error,
-                           time="run time of a lane / µs")  # fmt: skip
+                           time="run time of a lane / µs").get_legend().remove()  # fmt: skip
             ax.set_title(titles[problem])
+        drawn = zip(*(ax.lines for ax in panels[: len(problems)]), strict=True)
+        shown = [max(lines, key=lambda line: np.size(line.get_xdata())) for lines in drawn]
+        figure.legend(shown, names, loc="outside lower center", ncols=5, fontsize=9)
         folder = results.QUICK if quick else results.FOLDER
         folder.mkdir(parents=True, exist_ok=True)
         figure.savefig(folder / f"{name}.png")
+
+
+def _family(name: str) -> tuple[bool, str]:
+    """Ours first."""
+    return not name.startswith("pendax"), name

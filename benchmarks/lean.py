@@ -168,7 +168,7 @@ def _absent(read: Read) -> list[Row]:
         return next(found).loops[-1].total()
 
     beta, tau = {"beta": True}, {"tau": True}
-    settling, order = paper.settling_step(), paper.SETTLING
+    settling, order = paper.settling_step(), paper.RUBBING_TO_REST
     pairs = [
         ("β in a step", "driven", "torque", paper.step(**beta) - paper.step()),
         ("τ in a step", "driven", "damped", paper.step(**tau) - paper.step()),

@@ -72,7 +72,9 @@ JUNCTION = {
     "θ and v": _RUNNING + 3 + 2 + 4 + _RESTING + 2 + 7 + 7 + 5 + 1,
 }
 
-ORDER, SETTLING = 12, 10  # of the tolerances 8e-15 and 1e-12
+# Of the tolerance 8e-15, and of 1e-12.
+ORDER, WITH_TANGENTS, RUBBING = 20, 14, 16
+SETTLING, RUBBING_TO_REST = 18, 12
 _SIZE, _TIME = 23, 6
 
 
@@ -90,7 +92,10 @@ def tangent(order: int, *, beta: bool = False, tau: bool = False) -> int:
     return sines + force + 4 * order + 6
 
 
-def step(order: int = ORDER, *, beta: bool = False, tau: bool = False, directions: int = 0) -> int:
+def step(
+    order: int | None = None, *, beta: bool = False, tau: bool = False, directions: int = 0
+) -> int:
+    order = order or (WITH_TANGENTS if directions else ORDER)
     terms = {"beta": beta, "tau": tau}
     value = series(order, **terms) + _SIZE + beta + 5 * order + _TIME
     return value + directions * tangent(order, **terms)
@@ -109,7 +114,7 @@ def settling_step(*, beta: bool = False, tau: bool = False) -> int:
     return step(SETTLING, beta=beta, tau=tau) - _TIME + 1 + 2 * 19 + 7 + 11 + 1
 
 
-def rubbing_step(order: int = ORDER) -> int:
+def rubbing_step(order: int = RUBBING) -> int:
     """Dry friction alone, a torque that has a sign: up to a turning point, or over it.
 
     Each term of a polynomial with its slope takes 4.  Where v first comes to nothing: at the end

@@ -25,6 +25,8 @@ from pendax.solvers import Symplectic
 from .peers import library
 from .problems import KNOWN, Problem
 
+OURS = [1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-14]
+
 
 class Method(NamedTuple):
     name: str
@@ -45,7 +47,7 @@ def of(problem: Problem, quick: bool) -> Iterator[Method]:
 def ours(problem: Problem, quick: bool) -> Iterator[Method]:
     lanes = len(problem.v0)
     exact = problem.beta is None and problem.tau is None
-    rtols = [None] if exact else [1e-9] if quick else [1e-4, 1e-6, 1e-8, 1e-10, 1e-12]
+    rtols = [None] if exact else [1e-9] if quick else OURS
     v0 = jnp.asarray(problem.v0)
     for rtol in rtols:
         setting = "float64" if exact else f"rtol = {rtol:.0e}"

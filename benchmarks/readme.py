@@ -1,22 +1,23 @@
 """The README's tables and the numbers in its sentences, out of the results files.
 
 A block of the README begins with `<!-- TOPIC -->` and ends with `<!-- end TOPIC -->`; what is
-between is written here and nowhere else.
+between is written here and nowhere else.  All tables whole are in benchmarks/README.md.
 """
 
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from pathlib import Path
 
-from . import results
+from . import report, results
+from .results import Row, Tables, shown
 
 README = Path(__file__).parent.parent / "README.md"
-Tables = results.Tables
 
 
 def renew() -> None:
-    """Writes the blocks of all topics that have results."""
+    """Writes the blocks of all topics, and the report."""
     README.write_text(renewed(README.read_text(encoding="utf-8")), encoding="utf-8")
+    report.write()
 
 
 def renewed(text: str) -> str:
@@ -24,82 +25,225 @@ def renewed(text: str) -> str:
 
     def block(found: re.Match) -> str:
         name = found[1]
-        content = results.read(name)
-        return f"<!-- {name} -->\n{BLOCKS[name](content['tables'])}\n<!-- end {name} -->"
+        return f"<!-- {name} -->\n{BLOCKS[name](results.read(name)['tables'])}\n<!-- end {name} -->"
 
     return re.sub(r"<!-- (\w+) -->.*?<!-- end \1 -->", block, text, flags=re.DOTALL)
 
 
-def machine(name: str) -> str:
-    content = results.read(name)
-    on, versions = content["machine"], content["versions"]
-    return f"{on['cores']} cores of {on['processor']}, JAX {versions['jax']}"
+def accuracy(tables: Tables) -> str:
+    """A line for each function: the worst of its regions."""
+    rows = _table(tables, "errors")
+    lines = []
+    for function, here in _groups(rows, "function").items():
+        both = [row for row in here if row["SciPy max"] is not None]
+        lines.append({
+            "function": function,
+            "regions": len(here),
+            "largest error": max(row["max"] for row in here),
+            "mean": sum(row["mean"] for row in here) / len(here),
+            "SciPy's, where it has one": max((row["SciPy max"] for row in both), default=None),
+        })  # fmt: skip
+    return results.markdown(lines)
+
+
+def special(tables: Tables) -> str:
+    title, rows = next(iter(tables.items()))
+    lines = []
+    for work, here in _groups(rows, "work").items():
+        mine, peers = _parted(here, "library")
+        lines.append({
+            "work": work,
+            "pendax": "; ".join(_cell(row, "pendax", "ns", "eps") for row in mine),
+            "others": "; ".join(_cell(row, "", "ns", "eps") for row in peers),
+        })  # fmt: skip
+    caption = f"{title}; time an element, largest error in eps of the scale:"
+    return f"{caption}\n\n{results.markdown(lines)}\n\n{_figure('special')}"
 
 
 def free(tables: Tables) -> str:
-    return front("free", tables, "the closed form")
+    cost = {row["work"]: row["ns"] for row in _table(tables, "what the closed form costs")}
+    fell = [row for row in _table(tables, "on the separatrix") if row["which way"]]
+    longest = max(fell, key=lambda row: row["off by 0.1 rad at t"])
+    return (
+        f"{front('free', tables)}\n\n"
+        f"In arrays of 2²⁰ a time costs {shown(cost['one pendulum, many times'])} ns, a pendulum "
+        f"of its own {shown(cost['many pendulums, one time'])} ns, and with its gradient in ε, v0 "
+        f"and θ0 {shown(cost['the same, with the gradient in ε, v0, θ0'])} ns. On the separatrix "
+        f"itself, v0 = 2√ε, the pendulum nears the top and stays; all {len(fell)} solvers and "
+        f"settings fell off, the last of them, {longest['method']} at {longest['setting']}, after "
+        f"{shown(longest['off by 0.1 rad at t'])} s (ε = 1 1/s²)."
+    )
 
 
 def damped(tables: Tables) -> str:
-    bars = {row["bar"]: row for row in tables["bars"]}
-    random = next(row for name, row in bars.items() if name.startswith("random scenes: largest"))
-    slopes = next(row for name, row in bars.items() if name.startswith("gradients"))
-    scenes = tables["random scenes"]
+    bars = tables["bars"]
+    random = next(row for row in bars if row["bar"].startswith("random scenes: largest"))
+    slopes = next(row for row in bars if row["bar"].startswith("gradients"))
+    scenes = _table(tables, "random scenes")
     return (
-        f"{front('damped', tables, '`simulate`')}\n\n"
+        f"{front('damped', tables)}\n\n"
         f"Of {scenes[0]['scenes']} random scenes at {len(scenes)} tolerances none was off by more "
-        f"than {number(random['measured'])} times tolerance × (1 + max|y|) (1 + κ), and no "
-        f"gradient by more than {number(slopes['measured'])} of its scale."
+        f"than {shown(random['measured'])} times tolerance × (1 + max|y|) (1 + κ), and no "
+        f"gradient by more than {shown(slopes['measured'])} of its scale."
     )
 
 
 def gradients(tables: Tables) -> str:
-    return front("gradients", tables, "pendax")
+    return front("gradients", tables)
 
 
-def front(name: str, tables: Tables, ours: str) -> str:
-    """What each peer reaches, at which run time, and what we take to be as exact; the diagram."""
-    lines = [
-        {
-            "problem": row["problem"],
-            "peer": row["peer"],
-            "its least error": row["its least error"],
-            "in µs a lane": row["µs"],
-            f"{ours}, no less exact, in µs": row["pendax there"],
-        }
-        for row in tables["at each peer's least error"]
-    ]
+def front(name: str, tables: Tables) -> str:
+    """What each library reaches, at which run time, and how long we take to be as exact."""
+    lines = []
+    for problem, here in _groups(tables["at each peer's least error"], "problem").items():
+        line: Row = {"problem": problem, "diffrax": None, "heyoka": None, "SciPy": None}
+        for library, rows in _groups(here, "peer", _library).items():
+            best = min(rows, key=lambda row: row["its least error"])
+            fastest = min((r for r in rows if r["its least error"] <= 2 * best["its least error"]),
+                          key=lambda row: row["µs"])  # fmt: skip
+            there = fastest["pendax there"]
+            ours = "none of ours" if there is None else f"ours {shown(there)}"
+            line[library] = (
+                f"{fastest['peer'].removeprefix('SciPy ')}: {fastest['its least error']:.1g} "
+                f"in {shown(fastest['µs'])} µs ({ours})"
+            )
+        lines.append(line)
     return "\n\n".join([
+        "The least error that each library reached, its run time, and that of pendax to be as "
+        "exact, a lane:",
         results.markdown(lines),
-        f"![Error against run time](benchmarks/results/{name}.png)",
-        losses(tables),
+        _figure(name),
+        report.losses(tables),
     ])  # fmt: skip
 
 
-def losses(tables: Tables) -> str:
-    """Where a peer is ahead, in words."""
-    rows = tables.get("losses", [])
-    if not rows:
-        return "No peer was ahead anywhere."
-    return "\n".join(["Where a peer is ahead:", "", *(f"- {_loss(row)}" for row in rows)])
+def _library(peer: str) -> str:
+    return peer.split(",")[0].split()[0] if peer.startswith(("SciPy", "heyoka")) else "diffrax"
 
 
-def _loss(row: results.Row) -> str:
-    where = row.get("problem") or row.get("where")
-    if row["ratio"]:
-        spread = f" ({row['from']:.2g} to {row['to']:.2g})" if row.get("from") is not None else ""
-        how = f"takes {row['ratio']:.2g}{spread} of our time"
-    else:
-        how = f"reaches {row['error']:.1g}, which we do not"
-    return f"{where}: {row['peer']} {how}. {row['why']}"
+def sweeps(tables: Tables) -> str:
+    lines = []
+    for (scene, lanes), here in _groups(_table(tables, "sweeps"), "scene", "lanes").items():
+        line: Row = {"scene": scene, "lanes": lanes}
+        by = {row["by"]: row for row in here}
+        line |= {f"{name}, µs a lane": by[name]["µs"] if name in by else None
+                 for name in ("pendax", "diffrax", "heyoka", "SciPy")}  # fmt: skip
+        line["compiling, s: pendax, diffrax"] = ", ".join(
+            shown(by[name]["compiling, s"]) for name in ("pendax", "diffrax")
+        )
+        line["bytes a lane"] = ", ".join(
+            shown(by[name]["bytes a lane"]) for name in ("pendax", "diffrax")
+        )
+        lines.append(line)
+    return f"{results.markdown(lines)}\n\n{_figure('sweeps')}"
 
 
-def number(value: float) -> str:
-    return results.shown(float(value))
+def dry(tables: Tables) -> str:
+    return _points(tables, "a swing of", "ms", "rad")
+
+
+def fate(tables: Tables) -> str:
+    rows = [{**row, "wrong of 400": row["wrong"]} for row in _table(tables, "400 of those")]
+    columns = ("over", "method", "setting", "ms", "wrong of 400")
+    maps = _table(tables, "maps")
+    sentence = " and ".join(f"{row['starts']} in {shown(row['s'])} s" for row in maps)
+    return f"Maps of {sentence}.\n\n{_columns(rows, columns)}\n\n{_figure('fate')}"
+
+
+def junction(tables: Tables) -> str:
+    curves = "; ".join(
+        f"{row['currents']} currents, {row['junction']}: {shown(row['s'])} s"
+        for row in _table(tables, "I–V curves")
+    )
+    largest = _columns(_table(tables, "voltages"), ("voltages", "scenes", "largest error"))
+    branch = _columns(_table(tables, "falling"), ("method", "setting", "s", "error / Ic R"))
+    return f"{curves}.\n\n{largest}\n\n{branch}\n\n{_figure('junction')}"
+
+
+def fit(tables: Tables) -> str:
+    calls = {row["call"]: shown(row["s"]) for row in _table(tables, "5000")}
+    rows = _table(tables, "200 scenes")
+    columns = ("kind", "to 1e-8", "1 % noise: in 95 %", "of converged", "converged", "ms")
+    sentence = f"{calls['next']} s, the first time {calls['first']} s"
+    return f"{_columns(rows, columns)}\n\n5,000 samples with five parameters: {sentence}."
+
+
+def stability(tables: Tables) -> str:
+    rows = [row for row in _table(tables, "stiff and extreme") if row["dtype"] == "float64"]
+    columns = ("scene", "by", "error", "of derivatives", "steps", "verdict",
+               "SciPy, ellipj", "SciPy, solver", "diffrax")  # fmt: skip
+    missed = [row["bar"] for row in tables["bars"] if row["verdict"] == "missed"]
+    missed = [name for name in missed if name != "cases missed"]
+    return (
+        f"{_columns(rows, columns)}\n\nMissed, of both precisions: {', '.join(missed) or 'none'}."
+    )
+
+
+def lean(tables: Tables) -> str:
+    rows = [row for row in _table(tables, "operations") if not row["part"]]
+    columns = ("scene", "asked", "gradient", "on paper", "distinct", "transcendental", "roots")
+    return _columns(rows, columns)
+
+
+def start(tables: Tables) -> str:
+    ratios = {row["what"]: f"{row['ratio']:.2g}" for row in _table(tables, "imports")}
+    bars = {row["bar"]: row for row in tables["bars"]}
+    ellipk = bars["ellipk over equinox"]["measured"]
+    lines = []
+    for sweep, here in _groups(_table(tables, "cold start"), "sweep").items():
+        by = {row["cache"]: row["s"] for row in here}
+        if here[0]["by"] is not None:
+            lines.append({"sweep": sweep, "by": here[0]["by"], "s": by["no"],
+                          "with a warm cache, s": by["yes"]})  # fmt: skip
+    return (
+        f"`import pendax` takes {ratios['import pendax']} times as long as `import jax`, with "
+        f"`pendax.simulate` {ratios['pendax.simulate']}, `ellipk` {shown(ellipk)} times as long "
+        f"as `import equinox`. From the shell to the first number of 1,000 lanes:\n\n"
+        f"{results.markdown(lines)}"
+    )
+
+
+def _points(tables: Tables, title: str, time: str, unit: str) -> str:
+    rows = [{**row, f"error, {unit}": row["error"]} for row in _table(tables, title)]
+    return _columns(rows, ("method", "setting", time, f"error, {unit}"))
+
+
+def _table(tables: Tables, title: str) -> list[Row]:
+    return next(rows for name, rows in tables.items() if name.startswith(title))
+
+
+def _columns(rows: Iterable[Row], names: tuple[str, ...]) -> str:
+    return results.markdown([{name: row[name] for name in names} for row in rows])
+
+
+def _groups(rows: Iterable[Row], *keys) -> dict:
+    """Rows by what they have under the keys; a function among the keys is applied to it."""
+    *names, change = keys if callable(keys[-1]) else (*keys, lambda x: x)
+    groups: dict = {}
+    for row in rows:
+        group = tuple(row[name] for name in names)
+        groups.setdefault(change(group[0] if len(group) == 1 else group), []).append(row)
+    return groups
+
+
+def _parted(rows: Iterable[Row], key: str) -> tuple[list[Row], list[Row]]:
+    rows = list(rows)
+    ours = [row for row in rows if str(row[key]).startswith("pendax")]
+    return ours, [row for row in rows if row not in ours]
+
+
+def _cell(row: Row, ours: str, time: str, unit: str) -> str:
+    name = str(row["library"]).removeprefix(ours).strip()
+    error = "" if row["error"] is None else f", {shown(row['error'])} {unit}"
+    return f"{name} {shown(row[time])} {time}{error}".strip()
+
+
+def _figure(name: str) -> str:
+    return f"![{name}](benchmarks/results/{name}.png)"
 
 
 BLOCKS: dict[str, Callable[[Tables], str]] = {
-    "free": free,
-    "damped": damped,
-    "gradients": gradients,
-}
+    function.__name__: function
+    for function in (accuracy, special, free, damped, gradients, sweeps, dry, fate, junction, fit,
+                     stability, lean, start)
+}  # fmt: skip

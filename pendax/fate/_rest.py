@@ -49,7 +49,7 @@ def rest(beta, tau, dry, start: State, most, rtol: float) -> tuple[tuple[Scalar,
 
 
 def _followed(scene: Scene, start: State, most, rtol: float):
-    method = taylor(order_for(rtol, rtol), rtol, rtol, _LONGEST)
+    method = taylor(order_for(rtol, rtol, 12), rtol, rtol, _LONGEST)
     at = saddle(jnp.minimum(scene.tau, 1))
     push = scene.tau - scene.dry
     hill = saddle(jnp.clip(push, 0, 1))

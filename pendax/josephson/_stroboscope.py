@@ -176,7 +176,7 @@ def _period(
 ) -> State:
     """A period on; NaN where that takes too many steps."""
     rtol = _TOLERANCE * float(jnp.finfo(i0.dtype).eps)
-    full = taylor(order_for(rtol, rtol), rtol, rtol)
+    full = taylor(order_for(rtol, rtol, 16), rtol, rtol)
     slow = overdamped(_ORDER, rtol, rtol, sweeps=methods.sweeps)
     duration = 2 * np.pi / junction.frequency
 

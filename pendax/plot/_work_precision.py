@@ -8,7 +8,7 @@ from numpy.typing import ArrayLike
 
 Values = float | Sequence[float] | ArrayLike
 
-_MARKS = "osDv^<>Ph*"
+_MARKS = "osDv^<>Ph*d"  # as many as have no factor in common with the colours
 
 
 def work_precision(

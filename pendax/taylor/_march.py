@@ -121,11 +121,12 @@ def march(
     """
     on: Callable
     begin: Callable
-    order, longest, on, begin = order_for(rtol, atol), STABLE, until, _begun
+    most, longest, on, begin = (14 if tangents else 20), STABLE, until, _begun
     if is_switched(scene):
-        # A step has room for one turning point, and lines are mostly short.
+        # A step has room for one turning point, where roundings show, and lines are mostly short.
         longest, on, begin = 1.0, switched.until, switched.begun
-        order = 10 if isinstance(scene.tau, SampledTorque) else order
+        most = 10 if isinstance(scene.tau, SampledTorque) else 12 if tangents else 16
+    order = order_for(rtol, atol, most)
     full, slow = (
         kind(n, rtol, atol, min(longest, for_tangents(n, rtol, atol)) if tangents else longest)
         for kind, n in ((taylor, order), (overdamped, 8))

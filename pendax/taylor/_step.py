@@ -40,9 +40,12 @@ class Method(NamedTuple):
     landed: Callable[[Scene, State], tuple[State, Scalar]]
 
 
-def order_for(rtol: float, atol: float) -> int:
-    """Below the −½ ln(tolerance) of least work: that is flat there, and programs are smaller."""
-    return max(10, min(16, round(-0.37 * math.log(min(rtol, atol)))))
+def order_for(rtol: float, atol: float, most: int = 20) -> int:
+    """The order of least work: −½ ln(tolerance), and more for what a step costs at any order.
+
+    It is flat from there on; `most` where programs are long or roundings show.
+    """
+    return max(10, min(most, round(4 - 0.5 * math.log(min(rtol, atol)))))
 
 
 def taylor(order: int, rtol: float, atol: float, longest: float = STABLE) -> Method:
