@@ -24,17 +24,16 @@ def measure(seed: int, quick: bool) -> results.Tables:
         rows, losses = front.measure(problem, quick)
         points, lost = points + rows, lost + losses
     front.draw(points, "damped", quick, titles)
-    scenes, bars = random_scenes(seed, 16 if quick else 200, quick)
-    slopes, more = ([], []) if quick else gradients(seed, 40)
+    scenes, bars = ([], []) if quick else random_scenes(seed, 100)
+    slopes, more = ([], []) if quick else gradients(seed, 12)
     return {
         "error against run time": points,
         "at each peer's least error": front.summary(points),
         "losses": front.explained(lost, WHY),
         "random scenes": scenes,
         "their gradients": slopes,
-        "stiff": [] if quick else stiff(),
         "barely damped": [] if quick else barely_damped(),
-        "bars": bars + more + front.reasons(lost, WHY),
+        "bars": bars + more + front.reasons(lost, WHY, quick),
     }
 
 
@@ -50,12 +49,13 @@ _ORDER_5 = "of order 5, and so with fewer evaluations at coarse tolerances; we t
 WHY = {
     ("damped and driven", "heyoka"): _MACHINE_CODE,
     ("damped", "heyoka"): _MACHINE_CODE,
-    ("barely damped", "heyoka"): _MACHINE_CODE,
+    ("barely damped", "heyoka"): "the roundings of 93,000 steps add up, whatever the tolerance and "
+    "the order, most of them those of v in the unit of each step",
     ("under a periodic torque", "heyoka"): _ANY_TORQUE,
     ("under a periodic torque", "Tsit5"): _ORDER_5,
     ("under a periodic torque", "Dopri5"): _ORDER_5,
-    ("under a periodic torque", "Dopri8"): "the same formula and steps, within the spread of the "
-    "run times",
+    ("under a periodic torque", "Dopri8"): "the same formula and steps, in a program that can be "
+    "differentiated, stops at what is not finite and counts its steps",
 }
 
 
@@ -69,8 +69,8 @@ def problems(seed: int, quick: bool) -> dict[str, Problem]:
             "damped and driven", v0[: 64 if quick else None], 100.0, beta=0.16, tau=0.15,
             by="damped",
         ),
-        "β = 1e5, τ = 0.5, t = 1e6": Problem(
-            "stiff", some, 1e6, beta=1e5, tau=0.5, theta0=2.0, by="overdamped"
+        "β = 1e8, τ = 0.5, t = 1e9": Problem(
+            "stiff", some, 1e9, beta=1e8, tau=0.5, theta0=2.0, by="overdamped"
         ),
     }  # fmt: skip
     if quick:
@@ -83,9 +83,6 @@ def problems(seed: int, quick: bool) -> dict[str, Problem]:
         ),
         "β = 1e2, τ = 0.5, t = 1e3": Problem(
             "overdamped", some, 1e3, beta=1e2, tau=0.5, theta0=2.0, by="overdamped"
-        ),
-        "β = 1e8, τ = 0.5, t = 1e9": Problem(
-            "very stiff", some, 1e9, beta=1e8, tau=0.5, theta0=2.0, by="overdamped"
         ),
         "β = 1e-4, t = 5e4": Problem(
             "barely damped", rng.uniform(1.5, 1.9, 8), 5e4, beta=1e-4, by="barely damped"
@@ -116,11 +113,11 @@ def true_rows(rows: np.ndarray, slopes=()) -> np.ndarray:
         return np.array(pool.map(partial(_true, slopes), [tuple(row) for row in rows], 8))
 
 
-def random_scenes(seed: int, count: int, quick: bool):
+def random_scenes(seed: int, count: int):
     """Errors over tolerance × (1 + max|y|) × (1 + κ), of which 50 are allowed."""
     lines, worst, failures = [], 0.0, 0
-    rtols = (1e-8,) if quick else tuple(10.0**-n for n in range(4, 14))
-    for dtype, tolerances in ((np.float64, rtols), (np.float32, (1e-6,)))[: 1 if quick else 2]:
+    rtols = (1e-4, 1e-6, 1e-8, 1e-10, 1e-12, 1e-13)
+    for dtype, tolerances in ((np.float64, rtols), (np.float32, (1e-6,))):
         rows = draw(seed, count, dtype)
         true = true_rows(rows)
         beta, tau, theta0, v0 = (jnp.asarray(x, dtype) for x in rows.T)
@@ -178,25 +175,6 @@ def gradients(seed: int, count: int):
     largest = max(line["largest"] for line in lines)
     return lines, [results.bar("gradients of θ(100): largest share of their scale", largest,
                                at_most=1e-8)]  # fmt: skip
-
-
-def stiff() -> list[results.Row]:
-    """Steps and time while β grows, to t = 10 β; errors in tests/test_overdamped.py."""
-    rows = []
-    for dtype, rtol in ((np.float64, 1e-10), (np.float32, 1e-6)):
-        for beta in (1e3, 1e5, 1e8):
-            for tau in (0.5, 1.5):
-                ts = jnp.asarray(beta * np.array([0.01, 1, 10]), dtype)
-                scene = Pendulum(*(jnp.asarray(x, dtype) for x in (1.0, beta, tau)))
-                v0 = jnp.asarray(1.0, dtype)
-                run = partial(simulate, scene, ts, v0, rtol=rtol)
-                time = side_by_side({"": run}, 5)[""]
-                rows.append({
-                    "dtype": np.dtype(dtype).name, "β": beta, "τ": tau,
-                    "steps": int(run().stats["steps"]), "ms": time.median * 1e3,
-                    "spread": time.spread,
-                })  # fmt: skip
-    return rows
 
 
 def barely_damped() -> list[results.Row]:

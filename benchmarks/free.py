@@ -34,7 +34,7 @@ def measure(seed: int, quick: bool) -> results.Tables:
         "SciML's single pendulum": sciml(quick),
         "on the separatrix": [] if quick else falling(),
     }
-    return {**tables, "bars": bars + front.reasons(lost, WHY)}
+    return {**tables, "bars": bars + front.reasons(lost, WHY, quick)}
 
 
 def problems(seed: int, quick: bool) -> list[Problem]:

@@ -76,7 +76,7 @@ def _true(by, beta, tau, wave, theta0, t, v0) -> float:
 
 
 def _waved(beta, tau, wave, theta0, v0, t) -> float:
-    """Under τ + a cos ωt: mpmath's Taylor series, 30 digits."""
+    """Under τ + a cos ωt, in 30 digits."""
     import mpmath
 
     amplitude, rate = map(mpmath.mpf, wave)

@@ -77,12 +77,10 @@ def _by_elliptic(function: str) -> Callable:
     )
 
 
-def regions(seed: int, quick: bool) -> list[Point]:
+def regions(seed: int) -> list[Point]:
     """The work of a point is "function, region"."""
-    size, rounds, points = 2**12 if quick else 2**16, 3 if quick else 5, []
+    size, rounds, points = 2**16, 5, []
     for function, names in REGIONS.items():
-        if quick and function in ("ellipkinc", "ellipeinc"):  # they take longer to compile
-            continue
         for region in names:
             draws = [
                 columns(function, region, np.random.default_rng(seed), size, dtype)
@@ -92,16 +90,16 @@ def regions(seed: int, quick: bool) -> list[Point]:
             timings = side_by_side(calls, rounds)
             for library_, call in calls.items():
                 narrow = "float32" in library_
-                error = largest(function, draws[narrow], call(), 40 if quick else None)
+                error = largest(function, draws[narrow], call())
                 error *= EPS / float(np.finfo(np.float32).eps) if narrow else 1
                 timing = an_element(timings[library_], size)
                 points.append(Point(f"{function}, {region}", library_, timing, error))
     return points
 
 
-def largest(function: str, at: list[np.ndarray], got, count: int | None) -> float:
+def largest(function: str, at: list[np.ndarray], got) -> float:
     """The largest error on a sample, in eps × scale; NaN if one is."""
-    picked = slice(None, None, max(1, at[0].size // (count or LOOKED_AT[function])))
+    picked = slice(None, None, max(1, at[0].size // LOOKED_AT[function]))
     few = [np.asarray(x, float)[picked] for x in at]
     if function == "ellipj":
         values = np.stack([np.asarray(x, float)[picked] for x in got[:3]], 1)

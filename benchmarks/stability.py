@@ -109,7 +109,7 @@ def measure(seed: int, quick: bool) -> results.Tables:
         with jax.enable_x64(name == "float64"):
             free, solved = free_cases(dtype), solved_cases(dtype)
             if quick:  # the scenes that are solved take longest, most of it to compile
-                free, solved = free[:2], solved[1:2]
+                free, solved = free[:2], []
             rows += [free_row(case, dtype) for case in free]
             rows += [solved_row(case, dtype) for case in solved]
     for row in rows:

@@ -24,7 +24,7 @@ def measure(seed: int, quick: bool) -> results.Tables:
     rng = np.random.default_rng(seed)
     lanes = (1024,) if quick else (1, 32, 1024, 32_768)
     v0 = rng.uniform(0.1, 4.0, max(lanes))
-    rows, bars = [], []
+    rows, bars, lost = [], [], []
     for problem in scenes(v0)[: 2 if quick else 3]:
         per_lane = {}
         for count in lanes:
@@ -46,8 +46,33 @@ def measure(seed: int, quick: bool) -> results.Tables:
         most = max(lanes)
         ratio = per_lane["pendax", most].over(per_lane["diffrax", most])
         bars.append(results.bar(f"{problem.name}, {most} lanes: over diffrax", ratio, at_most=1))
+        lost += losses(problem.name, per_lane)
     draw(rows, quick)
-    return {"sweeps": rows, "bars": bars}
+    return {"sweeps": rows, "losses": lost, "bars": bars}
+
+
+WHY = {
+    ("damped and driven", "heyoka"): "machine code made for this equation, eight lanes at a time, "
+    "with every coefficient computed once; XLA computes the series thrice, for the size of the "
+    "step, for θ and for v",
+    ("periodic torque", "heyoka"): "our torque may be any function of time, of which no series is "
+    "known, so we take Dopri8; heyoka has the series of this one",
+    ("periodic torque", "diffrax"): "the same formula and steps, in a program that can be "
+    "differentiated, stops at what is not finite and counts its steps",
+}
+
+
+def losses(scene: str, spent: dict[tuple[str, int], Timing]) -> list[results.Row]:
+    """Where a peer was faster in every round."""
+    rows = []
+    for (name, count), timing in spent.items():
+        ratio = spent["pendax", count].over(timing)
+        if name != "pendax" and ratio["from"] > 1:
+            rows.append({
+                "where": f"{scene}, {count} lanes", "peer": name, "of": "run time", **ratio,
+                "why": WHY.get((scene, name), ""),
+            })  # fmt: skip
+    return rows
 
 
 def scenes(v0) -> list[Problem]:

@@ -6,7 +6,7 @@ import damped_references
 import numpy as np
 import pytest
 
-from benchmarks import problems, results
+from benchmarks import TOPICS, problems, readme, report, results
 from benchmarks.timing import Timing, side_by_side
 
 ROOT = Path(__file__).parent.parent
@@ -76,3 +76,11 @@ def test_reference_of_a_periodic_torque():
         long, short = (problems._extrapolated(force, mpmath.mpf(6), start, step=h)[0]
                        for h in (0.25, 0.125))  # fmt: skip
         assert abs(long - short) < 1e-18
+
+
+def test_readme_shows_what_was_measured():
+    """Every block, and the whole report, is what the results files in the tree give."""
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    assert readme.renewed(text) == text
+    assert report.REPORT.read_text(encoding="utf-8") == report.text()
+    assert {name for name in readme.BLOCKS if f"<!-- {name} -->" in text} == set(TOPICS)
