@@ -122,6 +122,7 @@ def slopes(function, x):
     return np.stack(found, -1)
 
 
+@pytest.mark.full  # compiles for most of a minute
 def test_derivatives():
     """In every argument and mode; the values are Arb's to 1e-12."""
 

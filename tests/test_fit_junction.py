@@ -93,6 +93,7 @@ def test_a_robust_loss_forgives_outliers():
     assert off[0] < 1e-3 < 1e-2 < off[1]
 
 
+@pytest.mark.full  # fits three quarters of a minute
 def test_retrapping_far_below_the_largest_voltage():
     """β_c = 150: the branch retraps at a tenth of Ic; parts of loops, offsets of either kind."""
     true = of_beta_c(150.0)
