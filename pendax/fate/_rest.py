@@ -9,8 +9,10 @@ equation is that of the torque σ τ − c, of which two things are known before
 - Past a saddle of τ − c, downhill, and with τ − c above τ_r, it runs for ever.
 """
 
+from collections.abc import Callable
 from typing import NamedTuple
 
+import jax
 import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Bool, Float, Int
@@ -40,27 +42,24 @@ class _Creep(NamedTuple):
 def rest(beta, tau, dry, start: State, most, rtol: float) -> tuple[tuple[Scalar, Scalar], Rest]:
     """Angle and time, with derivatives of every mode and order, and how it came there."""
 
-    def found(p):
-        beta, tau, dry, theta, v, most = p
-        scene, most = Scene(jnp.ones_like(beta), beta, tau, dry), most.astype(jnp.int32)
-        return _followed(scene, State(theta, v), most, rtol)
+    scene = Scene(jnp.ones_like(dry), beta, tau, dry)
+    p, treedef = jax.tree.flatten((scene, start, jnp.asarray(most).astype(dry.dtype)))
 
-    return by_columns(found, [beta, tau, dry, *start, jnp.asarray(most).astype(beta.dtype)])
+    def found(p):
+        scene, start, most = jax.tree.unflatten(treedef, p)
+        return _followed(scene, start, most.astype(jnp.int32), rtol)
+
+    return by_columns(found, p)
 
 
 def _followed(scene: Scene, start: State, most, rtol: float):
     method = taylor(order_for(rtol, rtol, 12), rtol, rtol, _LONGEST)
-    at = saddle(jnp.minimum(scene.tau, 1))
-    push = scene.tau - scene.dry
-    hill = saddle(jnp.clip(push, 0, 1))
-    runs = push > retrapping(scene.beta)
+    tau = jnp.zeros_like(scene.dry) if scene.tau is None else jnp.minimum(scene.tau, 1)
+    at, runs = saddle(tau), _runs(scene)
 
     def end_of(before, after):
-        crept = _creep(scene, after)
-        held = (after.way == 0) | crept.sure | _without(scene, at, after.state)
-        over = well_of(hill, after.state.theta) > well_of(hill, before.state.theta)
-        running = (after.way > 0) & (before.way > 0) & (over & runs | (push > 1))
-        return jnp.where(held, CAPTURED, jnp.where(running, RUNNING, GOING))
+        held = (after.way == 0) | _creep(scene, after).sure | _without(scene, at, after.state)
+        return jnp.where(held, CAPTURED, jnp.where(runs(before, after), RUNNING, GOING))
 
     def unfinished(carry):
         now, end = carry
@@ -75,7 +74,7 @@ def _followed(scene: Scene, start: State, most, rtol: float):
     now, end = lax.while_loop(unfinished, step, (begin, end_of(begin, begin)))
     crept = _creep(scene, now)
     well = well_of(at, now.state.theta)
-    bottom = 2 * jnp.pi * well + jnp.arcsin(jnp.minimum(scene.tau, 1))
+    bottom = 2 * jnp.pi * well + jnp.arcsin(tau)
     theta = jnp.where(crept.sure, crept.theta, now.state.theta)
     theta = jnp.where(_without(scene, at, now.state) & (now.way != 0), bottom, theta)
     # That of a step that made it certain is a matter of steps.
@@ -83,15 +82,37 @@ def _followed(scene: Scene, start: State, most, rtol: float):
     return (theta, t), Rest(end, lax.stop_gradient(well_of(at, theta)))
 
 
+def _runs(scene: Scene) -> Callable:
+    """Whether it has just been made certain that it will for ever."""
+    if scene.tau is None:
+        return lambda before, after: jnp.zeros_like(after.going)
+    push = scene.tau - scene.dry
+    hill = saddle(jnp.clip(push, 0, 1))
+    least = 0 if scene.beta is None else retrapping(scene.beta)
+
+    def runs(before, after):
+        over = well_of(hill, after.state.theta) > well_of(hill, before.state.theta)
+        return (after.way > 0) & (before.way > 0) & (over & (push > least) | (push > 1))
+
+    return runs
+
+
 def _without(scene: Scene, at, state: State) -> Bool[Array, ""]:
     """Whether there is no friction after all, and the damping alone has caught it."""
-    return (scene.dry == 0) & (scene.beta > 0) & (scene.tau <= 1) & is_captured(scene, at, state)
+    if scene.beta is None:
+        return jnp.zeros_like(scene.dry, bool)
+    damped = (scene.dry == 0) & (scene.beta > 0)
+    if scene.tau is not None:
+        damped = damped & (scene.tau <= 1)
+    return damped & is_captured(scene, at, state)
 
 
 def _creep(scene: Scene, now) -> _Creep:
     """Seen in the direction in which it goes."""
+    if scene.beta is None:
+        return _Creep(jnp.zeros_like(now.going), now.state.theta)
     angle, speed = now.way * now.state.theta, now.way * now.state.v
-    push = now.way * scene.tau - scene.dry
+    push = -scene.dry if scene.tau is None else now.way * scene.tau - scene.dry
     inside = (now.way != 0) & (jnp.abs(push) < 1) & (scene.beta > 0)
     edge = jnp.arcsin(jnp.where(inside, push, 0))
     well = lax.stop_gradient(jnp.ceil((angle - edge) / (2 * jnp.pi)))

@@ -1,6 +1,6 @@
 """Where a trajectory ends: in which well, or running for ever."""
 
-from functools import partial
+from functools import partial, reduce
 
 import equinox as eqx
 import jax
@@ -94,15 +94,15 @@ def settle(
         require_damped(pendulum, "its end without dry friction `dry`")
     rtol, atol = tolerance("rtol", rtol), tolerance("atol", atol)
     most = None if max_steps is None else whole("max_steps", max_steps, 1)
-    tau = 0.0 if pendulum.tau is None else pendulum.tau
-    beta = 0.0 if pendulum.beta is None else pendulum.beta
-    given = {"epsilon": pendulum.epsilon, "beta": beta, "tau": tau, "v0": v0, "theta0": theta0}
-    lanes = common(**given, **({} if pendulum.dry is None else {"dry": pendulum.dry}))
-    dtype = lanes[0].dtype
+    terms = {"beta": pendulum.beta, "tau": pendulum.tau, "dry": pendulum.dry}
+    given = {"epsilon": pendulum.epsilon, "v0": v0, "theta0": theta0}
+    given |= {name: x for name, x in terms.items() if x is not None}
+    lanes = dict(zip(given, common(**given), strict=True))
+    dtype = lanes["epsilon"].dtype
     if dtype in (jnp.float16, jnp.bfloat16):
         raise ValueError(f"Arguments must be float32 or float64 to be followed, but got {dtype}.")
     rtol = rtol or max(1e-12, float(jnp.finfo(dtype).eps) ** 0.9)
-    found = _settle(min(rtol, atol or rtol), most, *lanes)
+    found = _settle(min(rtol, atol or rtol), most, lanes)
     if throw:
         unsettled = found.result == Result.unsettled
         message = f"{Result[Result.unsettled]} `throw=False` says in which lane."
@@ -111,41 +111,56 @@ def settle(
 
 
 @partial(jax.jit, static_argnums=(0, 1))
-def _settle(rtol: float, most: int | None, *lanes: Float[Array, "..."]) -> Settled:
+def _settle(rtol: float, most: int | None, lanes: dict[str, Float[Array, "..."]]) -> Settled:
     def one(lane):
-        return _one(rtol, most, *lane)
+        return _one(rtol, most, **lane)
 
-    flat = tuple(x.ravel() for x in lanes)
+    shape = lanes["epsilon"].shape
+    flat = {name: x.ravel() for name, x in lanes.items()}
     # In blocks: the slowest lane holds up its neighbours alone.
-    found = jax.vmap(one)(flat) if flat[0].size <= _BLOCK else lax.map(one, flat, batch_size=_BLOCK)
-    return jax.tree.map(lambda x: x.reshape(lanes[0].shape), found)
+    few = flat["epsilon"].size <= _BLOCK
+    found = jax.vmap(one)(flat) if few else lax.map(one, flat, batch_size=_BLOCK)
+    return jax.tree.map(lambda x: x.reshape(shape), found)
 
 
-def _one(rtol: float, most: int | None, epsilon, beta, tau, v0, theta0, dry=None) -> Settled:
-    good = (epsilon > 0) & (epsilon < jnp.inf) & (beta >= 0) & (beta < jnp.inf)
-    good = good & jnp.isfinite(tau) & jnp.isfinite(v0)
-    if dry is not None:
-        good = good & (dry >= 0) & (dry < jnp.inf)
+def _one(
+    rtol: float, most: int | None, epsilon, v0, theta0, beta=None, tau=None, dry=None
+) -> Settled:
+    good = (epsilon > 0) & (epsilon < jnp.inf) & jnp.isfinite(v0)
+    for friction in (beta, dry):
+        if friction is not None:
+            good = good & (friction >= 0) & (friction < jnp.inf)
+    if tau is not None:
+        good = good & jnp.isfinite(tau)
     # An angle that has lost its turn has no well.
     good = good & (jnp.abs(theta0) < 0.1 / jnp.finfo(theta0.dtype).eps)
     root = jnp.sqrt(jnp.where(good, epsilon, 1))
-    mirror = jnp.where(tau < 0, -1, 1).astype(root.dtype)
-    # A lane without an answer hangs at rest.
-    rest = jnp.array([1, 0, 0, 0], root.dtype)
-    given = [beta / root, mirror * tau / (root * root), mirror * v0 / root, mirror * theta0]
-    beta, tau, v0, theta0 = jnp.where(good, jnp.stack(given), rest)
-    start, speed = State(theta0, v0), lax.stop_gradient(jnp.abs(v0))
+    mirror = jnp.ones_like(root)
+
+    def known(x, otherwise):
+        # A lane without an answer hangs at rest.
+        return None if x is None else jnp.where(good, x, otherwise)
+
+    if tau is not None:
+        mirror = jnp.where(tau < 0, -1, 1).astype(root.dtype)
+        tau = known(mirror * tau / (root * root), 0)
+    beta = known(None if beta is None else beta / root, 1)
+    dry = known(None if dry is None else dry / (root * root), 1)
+    start = State(known(mirror * theta0, 0), known(mirror * v0 / root, 0))
+    speed = lax.stop_gradient(jnp.abs(start.v))
+    slowing = reduce(jnp.maximum, [x for x in (beta, dry) if x is not None], 1e-12)
     if dry is None:
-        enough = 2000 + 20 * (speed + 4) / jnp.maximum(beta, 1e-12)
+        enough = 2000 + 20 * (speed + 4) / slowing
     else:
-        dry = jnp.where(good, dry / (root * root), 1)
-        enough = 2000 + 50 * (speed * speed + 4) / jnp.maximum(jnp.maximum(beta, dry), 1e-12)
+        enough = 2000 + 50 * (speed * speed + 4) / slowing
     limit = jnp.minimum(enough, _MOST).astype(jnp.int32) if most is None else most
     if dry is None:
         still = lax.stop_gradient((beta, tau, start))
         end, state, t = fate(*still, limit, rtol)
-        well = well_of(saddle(still[1]), state.theta)
-        theta = 2 * jnp.pi * well + jnp.arcsin(jnp.where(end == CAPTURED, tau, 0))
+        at = saddle(jnp.zeros_like(root) if tau is None else lax.stop_gradient(tau))
+        theta = 2 * jnp.pi * (well := well_of(at, state.theta))
+        if tau is not None:
+            theta = theta + jnp.arcsin(jnp.where(end == CAPTURED, tau, 0))
     else:
         limit = lax.stop_gradient(limit)
         (theta, t), (end, well) = at_rest(beta, tau, dry, start, limit, rtol)
@@ -160,18 +175,22 @@ def _one(rtol: float, most: int | None, epsilon, beta, tau, v0, theta0, dry=None
     )
 
 
-def fate(beta: Scalar, tau: Scalar, start: State, most, rtol: float):
+def fate(beta: Scalar, tau: Scalar | None, start: State, most, rtol: float):
     """Of ε = 1 and τ ≥ 0: how it ends, in which state that was certain, and when."""
-    scene, at = Scene(1 + 0 * beta, beta, tau), saddle(tau)
-    running = tau > retrapping(beta)
+    scene = Scene(1 + 0 * beta, beta, tau)
+    at = saddle(jnp.zeros_like(beta) if tau is None else tau)
+    running = None if tau is None else tau > retrapping(beta)
 
     def end_of(before: State, after: State):
-        passed = well_of(at, after.theta) > well_of(at, before.theta)
         captured = jnp.where(is_captured(scene, at, after), CAPTURED, GOING)
+        if running is None:
+            return captured
+        passed = well_of(at, after.theta) > well_of(at, before.theta)
         return jnp.where(passed & running, RUNNING, captured)
 
     first = jnp.where(is_captured(scene, at, start), CAPTURED, GOING)
-    first = jnp.where(tau > 1, RUNNING, first)
+    if tau is not None:
+        first = jnp.where(tau > 1, RUNNING, first)
     # Nothing ends without damping.
     first, most = jnp.where(beta > 0, first, GOING), jnp.where(beta > 0, most, 0)
     found = follow(scene, start, end_of, first, most, rtol)

@@ -204,6 +204,7 @@ def _period(
 
 def _within(how: Method, scene: Scene, state: State, left: Scalar) -> tuple[Scalar, State]:
     """A step of what is left at most, and the last two alike."""
-    h = how.size(scene, state)
+    known = how.series(scene, state)
+    h = how.size(scene, state, known)
     h = jnp.where(h < left, jnp.minimum(h, jnp.maximum(0.5 * left, left - h)), left)
-    return h, how.step(scene, state, h)
+    return h, how.step(scene, state, h, known)

@@ -169,11 +169,12 @@ def until(
         return (at.t != target) & at.going & (at.steps < max_steps)
 
     def step(at: March):
-        h = direction * method.size(scene, at.state)
+        known = method.series(scene, at.state)
+        h = direction * method.size(scene, at.state, known)
         last = ~(jnp.abs(h) < jnp.abs(target - at.t))
         after = jnp.where(last, target, at.t + h)
         # The step that is made is the difference of the times as they are rounded.
-        state = method.step(scene, at.state, after - at.t)
+        state = method.step(scene, at.state, after - at.t, known)
         fine = jnp.isfinite(state.theta) & jnp.isfinite(state.v) & (after != at.t)
         return March(after, state, at.steps + 1, fine & ~jnp.isnan(h))
 

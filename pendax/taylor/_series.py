@@ -6,6 +6,7 @@ The series of θ, v = θ̇, s = sin θ and c = cos θ in t follow from each othe
     (n+1) s_{n+1} = Σ_k v_k c_{n−k},              (n+1) c_{n+1} = − Σ_k v_k s_{n−k},
 
 with time counted in 1/rate of the moment, so that coefficients of any scene are of order one.
+The rate is a power of two: v in its unit has the digits of v.
 
 Jorba & Zou, Exp. Math. 14 (2005) 99.
 """
@@ -92,7 +93,7 @@ def scaled_series(order: int, scene: Scene, state: State):
         rate = jnp.maximum(rate, jnp.sqrt(largest(scene.tau)))
     if isinstance(scene.tau, Sine):
         rate = jnp.maximum(rate, scene.tau.frequency)
-    rate = lax.stop_gradient(rate)
+    rate = _power_of_two_below(lax.stop_gradient(rate))
     unit = 1 / rate
     scaled = Scene(
         scene.epsilon * unit * unit,
@@ -110,6 +111,13 @@ def scaled_series(order: int, scene: Scene, state: State):
         sines.append(sine)
         cosines.append(cosine)
     return rate, v
+
+
+def _power_of_two_below(x: Scalar) -> Scalar:
+    """Of a positive number, by its bits."""
+    whole = jnp.int64 if x.dtype == jnp.float64 else jnp.int32
+    exponent = lax.bitcast_convert_type(jnp.asarray(jnp.inf, x.dtype), whole)
+    return lax.bitcast_convert_type(lax.bitcast_convert_type(x, whole) & exponent, x.dtype)
 
 
 def force(scene: Scene, sines, v, n: int) -> Scalar:

@@ -10,7 +10,7 @@ Jorba & Zou, Exp. Math. 14 (2005) 99.
 import math
 from collections.abc import Callable
 from functools import partial
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import jax.numpy as jnp
 from jax import lax
@@ -29,13 +29,15 @@ STABLE = 2.0
 class Method(NamedTuple):
     """A step of size h and, from (θ, v), the size that keeps it within the tolerances.
 
-    `turn(scene, state, way, most)`: the size of one on which v keeps the sign `way`, `most` at
+    `series(scene, state)`: what both need, to hand to them, where they aren't to compute it each,
+    else `None`; `turn(scene, state, way, most)`: the size of one on which v keeps the sign `way`, `most` at
     most, and negative where v comes to nothing at its end; `landed(scene, state)`: from a state
     where v is nothing but for rounding and derivatives, to where it is nothing, and the time.
     """
 
-    step: Callable[[Scene, State, Scalar], State]
-    size: Callable[[Scene, State], Scalar]
+    series: Callable[[Scene, State], Any]
+    size: Callable[..., Scalar]  # scene, state, series
+    step: Callable[..., State]  # scene, state, h, series
     turn: Callable[[Scene, State, Scalar, Scalar], Scalar]
     landed: Callable[[Scene, State], tuple[State, Scalar]]
 
@@ -82,20 +84,24 @@ def method(
     """Of `series_of(order, scene, state)`: a rate, the coefficients of v / rate in rate · t."""
     series = partial(series_of, order)
 
-    def theta_after(scene, state, h):
-        rate, v = series(scene, state)
+    def shared(scene, state):
+        return series(scene, state) if cut is plain else None
+
+    def theta_after(scene, state, h, known=None):
+        rate, v = known or series(scene, state)
         return state.theta + h * rate * polynomial(integrated(v[:-1]), h * rate)
 
-    def v_after(scene, state, h):
+    def v_after(scene, state, h, known=None):
         # On a slow manifold the series starts from a v of its own.
-        rate, v = series(scene, state)
+        rate, v = known or series(scene, state)
         return rate * (v[0] + h * rate * polynomial(v[1:], h * rate))
 
-    def step(scene, state, h):
-        return State(cut(theta_after, scene, state, h), cut(v_after, scene, state, h))
+    def step(scene, state, h, known=None):
+        given = (scene, state, h) if known is None else (scene, state, h, known)
+        return State(cut(theta_after, *given), cut(v_after, *given))
 
-    def size_of(scene, state):
-        rate, v = series(scene, state)
+    def size_of(scene, state, known=None):
+        rate, v = known or series(scene, state)
         theta = integrated(v)
         allowed = [atol + rtol * jnp.abs(x) for x in state]
 
@@ -109,8 +115,9 @@ def method(
         own = jnp.minimum(within(order - 1), within(order)) / rate
         return jnp.minimum(own, longest / quickest(scene))
 
-    def size(scene, state):
-        return cut(size_of, *lax.stop_gradient((scene, state)))
+    def size(scene, state, known=None):
+        given = (scene, state) if known is None else (scene, state, known)
+        return cut(size_of, *lax.stop_gradient(given))
 
     def turn_of(scene, state, way, most):
         h = jnp.minimum(size_of(scene, state), most)
@@ -135,7 +142,7 @@ def method(
         theta = state.theta + x * polynomial(integrated(v[:-1]), x)
         return State(theta, jnp.zeros_like(x)), x / rate
 
-    return Method(step, size, turn, landed)
+    return Method(shared, size, step, turn, landed)
 
 
 def plain(function: Callable, *arguments):

@@ -113,9 +113,10 @@ def advanced(method: Method, scene: Scene, at: Stretch, target: Scalar) -> Stret
 
 
 def _free(method: Method, scene: Scene, at: Stretch, end: Scalar):
-    after = at.t + method.size(scene, at.state)
+    known = method.series(scene, at.state)
+    after = at.t + method.size(scene, at.state, known)
     after = jnp.where(after < end, after, end)
-    return after, method.step(scene, at.state, after - at.t)
+    return after, method.step(scene, at.state, after - at.t, known)
 
 
 def _rubbing(method: Method, scene: Scene, tau, slope, at: Stretch, end: Scalar):
