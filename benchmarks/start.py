@@ -87,8 +87,10 @@ def measure(seed: int, quick: bool) -> results.Tables:
 
 
 def _imports(rounds: int):
-    spent = _in_turn({name: (["-c", f"{code}; print(1)"], {}) for name, code in IMPORTS.items()},
-                     rounds)  # fmt: skip
+    cases = {name: (["-c", f"{code}; print(1)"], {}) for name, code in IMPORTS.items()}
+    for case in cases.values():  # files into the system's cache
+        _run(*case)
+    spent = _in_turn(cases, rounds)
     jax, equinox = spent["import jax"], spent["import equinox"]
     rows = [
         {"what": name, "s": timing.median, "spread": timing.spread, **timing.over(jax)}
@@ -132,44 +134,41 @@ def _cold_starts(rounds: int, folder: Path):
         run = ["-c", f"{_SWEEP}{before}print(float({number}), flush=True)"]
         cases[name, "no"] = run, {}
         cases[name, "yes"] = run, cached(name) | ALL_KEPT
-    command = [*COMMAND, "--out", str(folder / "out")]
-    ends = {"pendax sweep, its first line": [], "pendax sweep, to the end": ["--quiet"]}
-    for name, quiet in ends.items():
-        cases[name, "no"] = [*command, *quiet], {}
-        cases[name, "yes"] = [*command, *quiet, "--cache"], cached(name)
-    kinds["pendax sweep, its first line"] = CLOSED
+    name, command = "pendax sweep, its first line", [*COMMAND, "--out", str(folder / "out")]
+    kinds[name] = CLOSED
+    cases[name, "no"] = command, {}
+    cases[name, "yes"] = [*command, "--cache"], cached(name)
+    # Fills the caches.
+    programs = {name: _programs(*cases[name, "yes"]) for name in kinds}
     spent = _in_turn(cases, rounds)
     rows, bars = [], []
     for (name, cache), timing in spent.items():
-        built, unkept = _programs(*cases[name, cache])
+        built, unkept = programs[name]
         rows.append({
-            "sweep": name, "by": kinds.get(name), "cache": cache, "s": timing.median,
+            "sweep": name, "by": kinds[name], "cache": cache, "s": timing.median,
             "spread": timing.spread, "programs": built, "that no cache keeps": unkept,
         })  # fmt: skip
-        if name in kinds and cache in ("no", "yes"):
-            limit = LIMITS[kinds[name]][cache == "yes"]
-            second = timing.over(Timing((1.0,) * len(timing.samples)))
-            what = f"{name}, {'a warm' if cache == 'yes' else 'no'} cache: s"
-            bars.append(results.bar(what, second, at_most=limit))
+        limit = LIMITS[kinds[name]][cache == "yes"]
+        second = timing.over(Timing((1.0,) * len(timing.samples)))
+        what = f"{name}, {'a warm' if cache == 'yes' else 'no'} cache: s"
+        bars.append(results.bar(what, second, at_most=limit))
     return rows, bars
 
 
 def _programs(arguments, environment) -> tuple[int, int]:
-    """How many are compiled or taken from the cache, and those that no cache keeps."""
+    """How many are compiled, and those of them that no cache keeps."""
     loud = {"JAX_LOG_COMPILES": "1", "JAX_EXPLAIN_CACHE_MISSES": "1"}
     log = _run(arguments, environment | loud)[2]
     return log.count("Finished XLA compilation"), log.count("because it uses host callbacks")
 
 
 def _in_turn(cases, rounds: int) -> dict:
-    """Timings of processes, one of each in turn, after one that fills caches."""
+    """Timings of processes, one of each in turn."""
     spent = {name: [] for name in cases}
-    for i in range(rounds + 1):
+    for i in range(rounds):
         for name, case in cases.items():
-            seconds = _run(*case)[0]
-            if i:
-                spent[name].append(seconds)
-        print(f"round {i} of {rounds}", flush=True)
+            spent[name].append(_run(*case)[0])
+        print(f"round {i + 1} of {rounds}", flush=True)
     return {name: Timing(tuple(samples)) for name, samples in spent.items()}
 
 

@@ -93,7 +93,7 @@ def scaled_series(order: int, scene: Scene, state: State):
         rate = jnp.maximum(rate, jnp.sqrt(largest(scene.tau)))
     if isinstance(scene.tau, Sine):
         rate = jnp.maximum(rate, scene.tau.frequency)
-    rate = _power_of_two_below(lax.stop_gradient(rate))
+    rate = _power_of_two_above(lax.stop_gradient(rate))
     unit = 1 / rate
     scaled = Scene(
         scene.epsilon * unit * unit,
@@ -113,11 +113,12 @@ def scaled_series(order: int, scene: Scene, state: State):
     return rate, v
 
 
-def _power_of_two_below(x: Scalar) -> Scalar:
-    """Of a positive number, by its bits."""
+def _power_of_two_above(x: Scalar) -> Scalar:
+    """Of a positive number, by its bits: one below would take range from derivatives."""
     whole = jnp.int64 if x.dtype == jnp.float64 else jnp.int32
     exponent = lax.bitcast_convert_type(jnp.asarray(jnp.inf, x.dtype), whole)
-    return lax.bitcast_convert_type(lax.bitcast_convert_type(x, whole) & exponent, x.dtype)
+    below = lax.bitcast_convert_type(lax.bitcast_convert_type(x, whole) & exponent, x.dtype)
+    return 2 * below
 
 
 def force(scene: Scene, sines, v, n: int) -> Scalar:
