@@ -10,6 +10,7 @@ import sys
 import time
 from importlib import import_module
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 from . import TOPICS, results
 
@@ -23,14 +24,16 @@ def main() -> int:
         print("\n".join(f"{name:10} {about}" for name, about in TOPICS.items()))
         return 0
     names = options.topics or list(TOPICS)
+    if unknown := [name for name in names if name not in TOPICS]:
+        _parser().error(f"no topic {', '.join(unknown)}; there are {', '.join(TOPICS)}")
     worst = 0
-    if len(names) == 1:
-        worst = _one(names[0], options)
+    if options.quick or len(names) == 1:
+        worst = max([_one(name, options) for name in names])
     else:  # each in a process of its own: programs, memory and settings are not shared
         for name in names:
             done = subprocess.run([sys.executable, "-m", "benchmarks", name, *_flags(options)])
             worst = max(worst, done.returncode)
-    if not options.quick:
+    if not (options.quick or options.verify or options.seed != results.SEED):
         from . import readme
 
         readme.renew()
@@ -40,23 +43,46 @@ def main() -> int:
 def _one(name: str, options: argparse.Namespace) -> int:
     import jax
 
+    jax.clear_caches()
     jax.config.update("jax_enable_x64", True)
+    settings = {"seed": options.seed, "quick": options.quick}
+    if options.seed != results.SEED and not options.quick:
+        results.elsewhere(results.FOLDER / "other")
+    if options.verify and not (kept := _kept(name, settings)):
+        return 2
     started = time.perf_counter()
     print(f"\n# {name}: {TOPICS[name]}", flush=True)
     module = import_module(f".{name}", __package__)
-    tables = module.measure(options.seed, options.quick)
-    if not options.verify:
-        path = results.write(name, tables, seed=options.seed, quick=options.quick)
+    if options.verify:
+        with TemporaryDirectory() as folder:  # for figures
+            results.elsewhere(Path(folder))
+            tables = module.measure(**settings)
+    else:
+        tables = module.measure(**settings)
+        path = results.write(name, tables, **settings)
     for title, rows in tables.items():
         if rows:
             print(f"\n{title}\n\n{results.markdown(rows)}")
     missed = results.missed(tables)
     print(f"\n{name}: {time.perf_counter() - started:.0f} s; missed: {'; '.join(missed) or 'none'}")
     if options.verify:
-        folder = results.QUICK if options.quick else results.FOLDER
-        return int(results.differ(results.read(name, folder)["tables"], tables) > 0)
+        wrong, slow = results.differ(kept["tables"], tables)
+        print(f"{name}: rows that differ: {wrong}; in run times alone: {slow}")
+        return int(wrong > 0)
     print(f"written: {path}", flush=True)
     return int(options.check and bool(missed))
+
+
+def _kept(name: str, settings: dict) -> dict | None:
+    """The results to compare with, if there are any of these settings."""
+    path = results.folder(settings["quick"]) / f"{name}.json"
+    if not path.exists():
+        print(f"{name}: nothing to compare with, there is no {path}")
+    elif (known := results.read(name, path.parent))["settings"] == settings:
+        return known
+    else:
+        print(f"{name}: {path} is of {known['settings']}, not {settings}")
+    return None
 
 
 def _flags(options: argparse.Namespace) -> list[str]:
@@ -65,14 +91,17 @@ def _flags(options: argparse.Namespace) -> list[str]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(prog="python -m benchmarks", description=__doc__)
+    text = "All take half an hour on two cores.  Peers that are not installed are left out."
+    parser = argparse.ArgumentParser("python -m benchmarks", description=__doc__, epilog=text)
     add = parser.add_argument
-    add("topics", nargs="*", metavar="TOPIC", choices=[*TOPICS, []], help="all, if none is named")
+    add("topics", nargs="*", metavar="TOPIC", help="all, if none is named; see --list")
     add("--list", action="store_true", help="the topics, a line each")
     add("--quick", action="store_true", help="fewer points and rounds, into results/quick")
-    add("--seed", type=int, default=1, help="draws other points")
-    add("--check", action="store_true", help="exit 1 where a bar is missed")
-    add("--verify", action="store_true", help="compare with the results kept, and keep those")
+    add("--seed", type=int, default=results.SEED, help="other points, into results/other")
+    add("--check", action="store_true", help="exit 1 where a bar, what is aimed at, is missed")
+    add("--verify", action="store_true",
+        help="compare with the results that are there, and leave them; exit 1 if errors "
+        "differ, 2 if there are none; times are only reported")  # fmt: skip
     return parser
 
 

@@ -1,7 +1,14 @@
-"""References on all cores: those of one point after the other take longest of all."""
+"""What runs on all cores: references, which take longest of all, and peers with threads."""
 
 import multiprocessing
+import os
 from collections.abc import Callable, Iterable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+
+import numpy as np
+
+COUNT = os.cpu_count() or 1
 
 
 def each(function: Callable, rows: Iterable[Iterable[float]], *, worth: int = 40) -> list:
@@ -11,3 +18,17 @@ def each(function: Callable, rows: Iterable[Iterable[float]], *, worth: int = 40
         return list(map(function, rows))
     with multiprocessing.get_context("spawn").Pool() as pool:
         return pool.map(function, rows, chunksize=max(1, len(rows) // 50))
+
+
+def shared(work: Callable, workers: list, rows: np.ndarray) -> list:
+    """What `work(worker, its rows)` found, of all workers, each in a thread; a single row here,
+    as handing it over takes longer."""
+    if len(rows) == 1:
+        return work(workers[0], rows)
+    shares = np.array_split(rows, len(workers))
+    return [x for found in _threads().map(work, workers, shares) for x in found]
+
+
+@cache
+def _threads() -> ThreadPoolExecutor:
+    return ThreadPoolExecutor(COUNT)

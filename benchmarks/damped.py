@@ -18,17 +18,17 @@ SAVED = np.arange(1, 101) * 1.0  # of which every tenth is compared
 
 
 def measure(seed: int, quick: bool) -> results.Tables:
-    points, lost, titles = [], [], {}
+    points, best, lost, titles = [], [], [], {}
     for name, problem in problems(seed, quick).items():
         titles[problem.name] = f"{problem.name}\n{name} ({len(problem.v0)} lanes)"
-        rows, losses = front.measure(problem, quick)
-        points, lost = points + rows, lost + losses
+        rows, peers, losses = front.measure(problem, quick)
+        points, best, lost = points + rows, best + peers, lost + losses
     front.draw(points, "damped", quick, titles)
     scenes, bars = ([], []) if quick else random_scenes(seed, 100)
     slopes, more = ([], []) if quick else gradients(seed, 12)
     return {
         "error against run time": points,
-        "at each peer's least error": front.summary(points),
+        "at each peer's least error": best,
         "losses": front.explained(lost, WHY),
         "random scenes": scenes,
         "their gradients": slopes,
@@ -68,13 +68,13 @@ def problems(seed: int, quick: bool) -> dict[str, Problem]:
             "damped and driven", v0[: 64 if quick else None], 100.0, beta=0.16, tau=0.15,
             by="damped",
         ),
-        "β = 1e8, τ = 0.5, t = 1e9": Problem(
-            "stiff", some, 1e9, beta=1e8, tau=0.5, theta0=2.0, by="overdamped"
-        ),
     }  # fmt: skip
     if quick:
         return found
     return found | {
+        "β = 1e8, τ = 0.5, t = 1e9": Problem(
+            "stiff", some, 1e9, beta=1e8, tau=0.5, theta0=2.0, by="overdamped"
+        ),
         "β = 0.16, t = 100": Problem("damped", v0, 100.0, beta=0.16, by="damped"),
         "β = 0.5, τ = 0.9 + 0.4 cos 0.6t, t = 50": Problem(
             "under a periodic torque", v0[:256], 50.0, beta=0.5, tau=0.9, wave=(0.4, 0.6),

@@ -38,16 +38,16 @@ def measure(seed: int, quick: bool) -> results.Tables:
     bars.append(results.bar("mean velocity 1e-3 or more above τ_r, relative", far, at_most=1e-10))
     if not quick:
         _draw(found)
-    count = sum(len(scenes) for scenes, _ in starts)
+    count = len(starts[0][0])
     return {
         "maps, half of what is compared beside a boundary": rows,
-        f"{count} of those starts, time of one": [
+        f"{count} of those starts of each map, time of one": [
             {
                 "over": point.work,
                 "method": point.method,
                 "setting": point.setting,
-                **spent(point.timing, "ms", count / len(starts)),
-                "wrong": point.error,
+                **spent(point.timing, "ms", count),
+                f"wrong of {count}": point.error,
             }
             for point in points
         ],
@@ -78,7 +78,8 @@ def _fates(ends: Settled) -> np.ndarray:
 
 def one_map(scene, seed: int, pixels: int, rounds: int):
     """Its ends, its time, every second of the starts (β, τ, v0) that were compared with their true
-    fates, and how many of all were wrong: random pixels, and those with another fate beside."""
+    fates, for the scripts, and how many of all were wrong: random pixels, and those with another
+    fate beside."""
     beta, tau, v0 = scene
     call = partial(settle, Pendulum(1.0, beta, tau), v0, throw=False)
     timing = side_by_side({"": call}, rounds)[""]
@@ -169,4 +170,4 @@ def _draw(found: dict[str, Settled]) -> None:
             ax.set_title(name + ", ε = 1 1/s²")
             if over_beta:
                 ax.set_yscale("log")
-        figure.savefig(results.FOLDER / "fate.png")
+        figure.savefig(results.folder() / "fate.png")

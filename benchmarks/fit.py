@@ -66,7 +66,7 @@ def random_scenes(seed: int, kinds, each: int):
             {
                 "kind": kind,
                 "to 1e-8": int(good.sum()),
-                "not, unsaid": int((~good & said).sum()),
+                "converged elsewhere": int((~good & said).sum()),
                 "1 % noise: in 95 %": float(held.mean()),
                 "of converged": float(held[well].mean()),
                 "converged": float(well.mean()),

@@ -19,16 +19,16 @@ WHY: dict[tuple[str, str], str] = {}
 
 
 def measure(seed: int, quick: bool) -> results.Tables:
-    points, lost, titles = [], [], {}
+    points, best, lost, titles = [], [], [], {}
     for problem in problems(seed, quick):
         titles[problem.name] = f"{problem.name} ({len(problem.v0)} lanes)"
-        rows, losses = front.measure(problem, quick)
-        points, lost = points + rows, lost + losses
+        rows, peers, losses = front.measure(problem, quick)
+        points, best, lost = points + rows, best + peers, lost + losses
     front.draw(points, "free", quick, titles)
     cost, bars = ([], []) if quick else costs(seed, 2**20, 11)
     tables = {
         "error against run time": points,
-        "at each peer's least error": front.summary(points),
+        "at each peer's least error": best,
         "losses": front.explained(lost, WHY),
         "what the closed form costs": cost,
         "SciML's single pendulum": sciml(quick),

@@ -15,10 +15,10 @@ EPS = 2.0**-52
 ROUNDS = 3
 
 
-def measure(problem: Problem, quick: bool) -> tuple[list[results.Row], list[results.Row]]:
-    """Points, and those of peers that no point of ours is as good as in both."""
+def measure(problem: Problem, quick: bool) -> tuple[list[results.Row], ...]:
+    """Points, the best of each peer, and those that no point of ours is as good as in both."""
     if (true := problem.true()) is None:
-        return [], []
+        return [], [], []
     of = methods.of(problem, quick)
     return points(problem.name, of, problem.true, _floor(problem, true))
 
@@ -51,7 +51,7 @@ def points(problem: str, of: Iterable[Method], truth: Callable, floor: float, si
         })  # fmt: skip
         timings.append(each)
     print(f"{problem}: {len(known)} settings", flush=True)
-    return rows, losses(rows, timings, floor)
+    return rows, best(rows, floor), losses(rows, timings, floor)
 
 
 def _once(call) -> Timing:
@@ -70,32 +70,44 @@ def _floor(problem, true) -> float:
     return 2 * EPS * float(np.max(np.abs(true)) + problem.t * np.max(np.abs(problem.v0)))
 
 
+def _ours(rows, floor: float, error: float) -> list[int]:
+    """Our points that are as exact, errors below `floor` being equal, and such as differ by a
+    tenth.  float32's are of other scenes, whose numbers are rounded."""
+    most = max(1.1 * error, floor)
+    mine = (i for i, row in enumerate(rows) if row["method"].startswith("pendax"))
+    return [i for i in mine if "float32" not in rows[i]["method"] and rows[i]["error"] <= most]
+
+
 def losses(rows, timings: list[Timing], floor: float) -> list[results.Row]:
-    """For each peer, where it is fastest in comparison at an error that no faster point of ours
-    has; errors below `floor` are equal, and such as differ by a tenth.  A ratio below 1: pendax
-    takes 1/ratio times as long."""
-    mine = [i for i, row in enumerate(rows) if row["method"].startswith("pendax")]
-    worst = {}
-    for i, row in enumerate(rows):
-        if i in mine or np.isnan(row["error"]):
+    """For each peer, its smallest error that we do not reach, and where it is fastest in
+    comparison: at best it takes that share of our time at no larger an error."""
+    lost = []
+    for name in dict.fromkeys(row["method"] for row in rows):
+        points = [i for i, row in enumerate(rows) if row["method"] == name]
+        points = [i for i in points if rows[i]["error"] == rows[i]["error"]]
+        if name.startswith("pendax"):
             continue
-        able = [j for j in mine if rows[j]["error"] <= max(1.1 * row["error"], floor)]
-        if able:
-            best = min(able, key=lambda j: timings[j].median)
-            ratio = timings[i].over(timings[best])
-            if ratio["ratio"] >= 1:
+        alone, faster = [], []
+        for i in points:
+            able = _ours(rows, floor, rows[i]["error"])
+            if not able:
+                alone.append(i)
                 continue
-        else:
-            best, ratio = None, {"ratio": 0.0, "from": None, "to": None}
-        lost = {
-            "problem": row["problem"], "peer": row["method"], "setting": row["setting"],
-            "error": row["error"], "floor": floor, **ratio,
-            "ours": "no setting as exact" if best is None else rows[best]["setting"],
-        }  # fmt: skip
-        known = worst.get(row["method"])
-        if known is None or lost["ratio"] < known["ratio"]:
-            worst[row["method"]] = lost
-    return list(worst.values())
+            ours = min(able, key=lambda j: timings[j].median)
+            if (ratio := timings[i].over(timings[ours]))["ratio"] < 1:
+                faster.append((ratio["ratio"], i, ours, ratio))
+        common = {"problem": rows[0]["problem"], "peer": name}
+        if alone:
+            i = min(alone, key=lambda i: rows[i]["error"])
+            lost.append({**common, "setting": rows[i]["setting"], "error": rows[i]["error"],
+                         "ratio": None, "from": None, "to": None, "at": len(alone),
+                         "settings": len(points), "ours": "no setting as exact"})  # fmt: skip
+        if faster:
+            _, i, ours, ratio = min(faster)
+            lost.append({**common, "setting": rows[i]["setting"], "error": rows[i]["error"],
+                         **ratio, "at": len(faster), "settings": len(points),
+                         "ours": rows[ours]["setting"]})  # fmt: skip
+    return lost
 
 
 def explained(lost, why: dict[tuple[str, str], str]) -> list[results.Row]:
@@ -114,27 +126,25 @@ def _cause(row) -> tuple[str, str]:
     return row["problem"], row["peer"].split(",")[0]
 
 
-def summary(rows) -> list[results.Row]:
-    """How many times as long the fastest of each peer takes as ours, at no larger an error."""
+def best(rows, floor: float) -> list[results.Row]:
+    """How long we take to be as exact as each peer where it is most exact."""
     lines = []
-    for problem in dict.fromkeys(row["problem"] for row in rows):
-        here = [row for row in rows if row["problem"] == problem]
-        mine = [row for row in here if row["method"].startswith("pendax")]
-        for name in dict.fromkeys(row["method"] for row in here):
-            if name.startswith("pendax"):
-                continue
-            points = [row for row in here if row["method"] == name]
-            best = min((r for r in points if r["error"] == r["error"]),
-                       key=lambda r: r["error"], default=None)  # fmt: skip
-            if best is None:
-                continue
-            able = [r["µs"] for r in mine if r["error"] <= best["error"]]
-            lines.append({
-                "problem": problem, "peer": name, "its least error": best["error"],
-                "µs": best["µs"], "spread": best["spread"],
-                "pendax there": min(able) if able else None,
-            })  # fmt: skip
+    for name in dict.fromkeys(row["method"] for row in rows):
+        points = [row for row in rows if row["method"] == name and row["error"] == row["error"]]
+        if name.startswith("pendax") or not points:
+            continue
+        row = min(points, key=lambda row: row["error"])
+        able = [rows[i]["µs"] for i in _ours(rows, floor, row["error"])]
+        lines.append({
+            "problem": row["problem"], "peer": name, "its least error": row["error"],
+            "µs": row["µs"], "spread": row["spread"], "pendax, µs": min(able) if able else None,
+        })  # fmt: skip
     return lines
+
+
+# A colour for each library, a mark for each of its methods, alike in all figures.
+_COLOURS = {"pendax": "C0", "heyoka": "C1", "SciPy": "C2", "Symplectic": "C4"}
+_OTHERS, _MARKS = "C3", "os^vDP*X"  # the others are diffrax's
 
 
 def draw(
@@ -162,15 +172,27 @@ def draw(
             lines_of = {name: np.reshape(sorted(x), (-1, 2)).T for name, x in points.items()}
             work_precision(ax, lines_of, error=error,
                            time="run time of a lane / µs").get_legend().remove()  # fmt: skip
+            for line, look in zip(ax.lines, _looks(names), strict=True):
+                line.set(**look)
             ax.set_title(titles[problem])
         drawn = zip(*(ax.lines for ax in panels[: len(problems)]), strict=True)
         shown = [max(lines, key=lambda line: np.size(line.get_xdata())) for lines in drawn]
         figure.legend(shown, names, loc="outside lower center", ncols=3 * columns - 1, fontsize=9)
-        folder = results.QUICK if quick else results.FOLDER
+        folder = results.folder(quick)
         folder.mkdir(parents=True, exist_ok=True)
         figure.savefig(folder / f"{name}.png")
 
 
-def _family(name: str) -> tuple[bool, str]:
-    """Ours first."""
-    return not name.startswith("pendax"), name
+def _looks(names: list[str]) -> list[dict]:
+    looks, count = [], {}
+    for name in names:
+        colour = next((c for word, c in _COLOURS.items() if name.startswith(word)), _OTHERS)
+        count[colour] = count.get(colour, -1) + 1
+        looks.append({"color": colour, "marker": _MARKS[count[colour]]})
+    return looks
+
+
+def _family(name: str) -> tuple[int, str]:
+    """Ours first, then library by library."""
+    words = ["pendax", "Symplectic", "heyoka", "SciPy"]
+    return next((i for i, word in enumerate(words) if name.startswith(word)), len(words)), name

@@ -6,9 +6,7 @@ and its forward mode, heyoka's variational equations, central differences around
 
 import copy
 import math
-import os
 from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 
 import damped_references as references
@@ -19,7 +17,7 @@ import numpy as np
 
 from pendax import Pendulum, simulate
 
-from . import front, results
+from . import cores, front, results
 from .methods import OURS, Method
 from .peers import library
 
@@ -41,12 +39,12 @@ def measure(seed: int, quick: bool) -> results.Tables:
         for x in v0[:KNOWN]
     ])  # fmt: skip
     size = 1 + np.abs(true)
-    rows, lost = front.points(PROBLEM, methods(v0, quick), lambda dtype: true, 1e-13, size)
+    rows, best, lost = front.points(PROBLEM, methods(v0, quick), lambda dtype: true, 1e-13, size)
     titles = {PROBLEM: f"∂θ({T:g})/∂(β, τ, v0), β = {BETA}, τ = {TAU} ({len(v0)} lanes)"}
     front.draw(rows, "gradients", quick, titles, error="largest error / (1 + |gradient|)")
     return {
         "error against run time": rows,
-        "at each peer's least error": front.summary(rows),
+        "at each peer's least error": best,
         "losses": front.explained(lost, WHY),
         "bars": front.reasons(lost, WHY, quick),
     }
@@ -108,11 +106,11 @@ def by_heyoka(v0: np.ndarray, quick: bool) -> Iterator[Method]:
     beta, tau = heyoka.par[0], heyoka.par[1]
     system = [(theta, v), (v, tau - beta * v - heyoka.sin(theta))]
     varied = heyoka.var_ode_sys(system, [beta, tau, v], order=1)
-    width, threads = heyoka.recommended_simd_size(), os.cpu_count() or 1
+    width = heyoka.recommended_simd_size()
     pars = np.repeat([[BETA], [TAU]], width, 1)
     for tol in (1e-9,) if quick else (1e-6, 1e-9, 1e-12, 2e-16):
         run = heyoka.taylor_adaptive_batch(varied, np.zeros((2, width)), tol=tol, pars=pars)
-        start, runs = np.array(run.state), [copy.deepcopy(run) for _ in range(threads)]
+        start, runs = np.array(run.state), [copy.deepcopy(run) for _ in range(cores.COUNT)]
 
         def work(run, rows, start=start):
             found = []
@@ -125,9 +123,7 @@ def by_heyoka(v0: np.ndarray, quick: bool) -> Iterator[Method]:
             return found
 
         def call(runs=runs, work=work):
-            shares = np.array_split(v0.reshape(-1, width), threads)
-            with ThreadPoolExecutor(threads) as pool:
-                return np.concatenate([np.concatenate(x) for x in pool.map(work, runs, shares)])
+            return np.concatenate(cores.shared(work, runs, v0.reshape(-1, width)))
 
         yield Method("heyoka, variational equations", f"tol = {tol:.0e}", call, len(v0))
 

@@ -199,4 +199,4 @@ def _draw(points: list[Point]) -> None:
         methods = {name: tuple(zip(*rows, strict=True)) for name, rows in methods.items()}
         plot.work_precision(right, methods, error=r"largest error / $I_c R$")
         right.set_title(f"{points[0].work} of the falling branch")
-        figure.savefig(results.FOLDER / "junction.png")
+        figure.savefig(results.folder() / "junction.png")

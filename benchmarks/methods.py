@@ -7,10 +7,8 @@ other.  heyoka runs a thread on every core, XLA as many as it likes, SciPy one.
 
 import copy
 import math
-import os
 import warnings
 from collections.abc import Callable, Iterator
-from concurrent.futures import ThreadPoolExecutor
 from functools import partial
 from typing import NamedTuple
 
@@ -22,6 +20,7 @@ import numpy as np
 from pendax import simulate
 from pendax.solvers import Symplectic
 
+from . import cores
 from .peers import library
 from .problems import KNOWN, Problem
 
@@ -163,17 +162,17 @@ def by_heyoka(problem: Problem, tolerances=(1e-6, 1e-9, 1e-12, 2e-16)) -> Iterat
     theta, v = heyoka.make_vars("theta", "v")
     field = _field(problem, heyoka.sin, heyoka.cos)
     system = list(zip((theta, v), field(heyoka.time, (theta, v), None), strict=True))
-    width, threads = heyoka.recommended_simd_size(), os.cpu_count() or 1
+    width = heyoka.recommended_simd_size()
     count = min(len(problem.v0), 64)
     for tol in tolerances:
         scalar = heyoka.taylor_adaptive(system, [0.0, 0.0], tol=tol)
-        scalars = [copy.deepcopy(scalar) for _ in range(threads)]
+        scalars = [copy.deepcopy(scalar) for _ in range(cores.COUNT)]
         given = problem.v0[:count, None]
         call = partial(_threaded, problem, scalars, given)
         yield Method("heyoka", f"tol = {tol:.0e}", call, count)
-        if (rows := len(problem.v0) // width) >= threads:
+        if (rows := len(problem.v0) // width) >= cores.COUNT:
             batch = heyoka.taylor_adaptive_batch(system, np.zeros((2, width)), tol=tol)
-            batches = [copy.deepcopy(batch) for _ in range(threads)]
+            batches = [copy.deepcopy(batch) for _ in range(cores.COUNT)]
             given = problem.v0[: rows * width].reshape(rows, width)
             call = partial(_threaded, problem, batches, given)
             yield Method(f"heyoka, batches of {width}", f"tol = {tol:.0e}", call, rows * width)
@@ -195,9 +194,7 @@ def _threaded(problem, integrators, rows) -> np.ndarray:
             found.append(np.array(integrator.state[0]))
         return found
 
-    shares = np.array_split(rows, len(integrators))
-    with ThreadPoolExecutor(len(integrators)) as pool:
-        return np.concatenate([np.ravel(x) for x in pool.map(work, integrators, shares)])
+    return np.ravel(cores.shared(work, integrators, rows))
 
 
 def long(problem: Problem) -> bool:

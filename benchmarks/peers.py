@@ -18,12 +18,16 @@ _RESULTS = {
 }
 
 
+ABSENT: set[str] = set()  # of the peers that were asked for
+
+
 def library(name: str) -> ModuleType | None:
     """The module, or None and a line that says so."""
     try:
         return importlib.import_module(name)
     except ImportError as error:
         print(f"skipped: {name} ({error})")
+        ABSENT.add(name)
         return None
 
 
@@ -64,6 +68,7 @@ def _built(peer: str) -> ctypes.CDLL | None:
         except (OSError, subprocess.CalledProcessError) as error:
             why = getattr(error, "stderr", None) or str(error)
             print(f"skipped: {peer}, whose driver does not build ({why.strip().splitlines()[0]})")
+            ABSENT.add(peer)
             return None
         driver = ctypes.CDLL(str(program))
     driver.prepare()

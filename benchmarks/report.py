@@ -20,7 +20,11 @@ def text() -> str:
         "Written by `python -m benchmarks` out of benchmarks/results; `python -m benchmarks "
         "--verify` measures again and compares. Times are medians of rounds in turn, each method "
         "warmed up and blocked; *spread* is how far a round lay from the median, relative, and 0.5 "
-        "where there was one round; *from* and *to* are the least and largest ratio of a round.",
+        "where there was one round; *from* and *to* are the least and largest ratio of a round. A "
+        "*lane* is one of the pendulums that are followed side by side, a *bar* what was aimed "
+        "at. heyoka runs a thread on each core, XLA (pendax, diffrax, jaxellip, "
+        "elliptic-functions) as many as it likes, SciPy, GSL, Boost, mpmath and pyjjasim one. "
+        "Errors without a unit are in eps of the scale; angles in rad.",
     ]
     for name, about in TOPICS.items():
         if not (results.FOLDER / f"{name}.json").exists():
@@ -32,17 +36,37 @@ def text() -> str:
             f"{on['cores']} cores of {on['processor']}, Python {on['python']}, "
             + ", ".join(f"{package} {v}" for package, v in versions.items() if v)
             + f"; seed {content['settings']['seed']}."
+            + "".join(f" Without {peer}, which was not there." for peer in content["absent"])
         )
         if (results.FOLDER / f"{name}.png").exists():
             parts.append(f"![{name}](results/{name}.png)")
         for title, rows in content["tables"].items():
             if title == "losses":
                 parts.append(losses(content["tables"]))
+            elif title == "bars":
+                parts.append(bars(rows))
             elif rows and len(rows) < _POINTS:
                 parts.append(f"### {title}\n\n{results.markdown(rows)}")
             elif rows:
                 parts.append(f"### {title}\n\n{len(rows)} points: results/{name}.json.")
     return "\n\n".join(parts) + "\n"
+
+
+def bars(rows: list[Row]) -> str:
+    """Those that are missed before the others, of which no more is shown than fits."""
+    missed = [row for row in rows if row["verdict"] == "missed"]
+    others = [row for row in rows if row not in missed]
+    heading = f"### bars: {len(missed)} missed, {len(others)} others"
+    shown = missed + others[: max(0, _POINTS - len(missed))]
+    return f"{heading}\n\n{results.markdown(shown)}" if rows else "### bars: none"
+
+
+def missed(tables: Tables) -> str:
+    """In words, and nothing where all are met."""
+    rows = [row for row in tables["bars"] if row["verdict"] == "missed"]
+    count = sum(row["verdict"] != "skipped" for row in tables["bars"])
+    each = (f"{row['bar']} {results.shown(row['measured'])} ({row['limit']})" for row in rows)
+    return f"Missed, {len(rows)} of {count} aims: {'; '.join(each)}." if rows else ""
 
 
 def losses(tables: Tables) -> str:
@@ -63,9 +87,13 @@ def _loss(row: Row) -> str:
         return f"{where}: {peer} is nearer by a factor of {row['ratio']:.2g}"
     if row.get("of") == "run time":  # ours over theirs
         return f"{where}: {peer} is faster by a factor of {_range(row)}"
-    if not row["ratio"]:
-        return f"{where}: {peer} reaches {row['error']:.1g}, which we do not"
-    return f"{where}, error {row['error']:.1g}: {peer} takes {_range(row)} of our time"
+    settings = f"at {row['at']} of {row['settings']} settings"
+    if row["ratio"] is None:
+        return f"{where}: {peer} reaches errors that we do not, {row['error']:.1g} ({settings})"
+    return (
+        f"{where}: {peer} is faster {settings}, with {_range(row)} of our time at "
+        f"an error of {row['error']:.1g}"
+    )
 
 
 def _range(row: Row) -> str:

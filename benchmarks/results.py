@@ -7,10 +7,11 @@ from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
 FOLDER = Path(__file__).parent / "results"
-QUICK = FOLDER / "quick"  # not kept
+SEED = 1  # of what is kept
 _PACKAGES = ("pendax", "jax", "jaxlib", "diffrax", "equinox", "numpy", "scipy", "heyoka")
 _TIMES = ("ns", "µs", "ms", "s")  # columns of medians; "spread" beside them is relative
 _SPREADS = ("spread", "from", "to")
+_ASSUMED = 0.5  # spread of a time that has none beside it
 Row = dict[str, str | float | int | bool | None]
 Tables = dict[str, list[Row]]
 
@@ -41,13 +42,27 @@ def bar(
     }
 
 
+_elsewhere: list[Path] = []
+
+
+def elsewhere(path: Path) -> None:
+    """From now on results and figures go there."""
+    _elsewhere.append(path)
+
+
+def folder(quick: bool = False) -> Path:
+    """Where results and figures go: those of quick runs and of other seeds are not kept in git."""
+    return _elsewhere[-1] if _elsewhere else FOLDER / "quick" if quick else FOLDER
+
+
 def write(name: str, tables: Tables, *, seed: int, quick: bool) -> Path:
-    """`tables` into results/NAME.json, beside the machine, the versions and the settings."""
+    """`tables` into NAME.json, beside the machine, the versions and the settings."""
     import jax
 
-    folder = QUICK if quick else FOLDER
-    folder.mkdir(parents=True, exist_ok=True)
-    path = folder / f"{name}.json"
+    from .peers import ABSENT
+
+    folder(quick).mkdir(parents=True, exist_ok=True)
+    path = folder(quick) / f"{name}.json"
     content = {
         "machine": {
             "device": jax.devices()[0].device_kind,
@@ -57,6 +72,7 @@ def write(name: str, tables: Tables, *, seed: int, quick: bool) -> Path:
         },
         "versions": {package: _version(package) for package in _PACKAGES},
         "settings": {"seed": seed, "quick": quick},
+        "absent": sorted(ABSENT),
         "tables": tables,
     }
     path.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
@@ -68,34 +84,53 @@ def read(name: str, folder: Path = FOLDER) -> dict:
     return json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
 
 
-def differ(old: Tables, new: Tables) -> int:
-    """Prints where two runs of one topic differ: in times and ratios by more than their spread,
-    in anything else at all; the number of such rows."""
-    count = 0
-    for title in {*old, *new}:
+def differ(old: Tables, new: Tables) -> tuple[int, int]:
+    """Prints where two runs of one topic differ, and counts them: rows whose errors, or anything
+    else that comes out the same again, do; and those of which only times and ratios do, by more
+    than their spread."""
+    wrong = slow = 0
+    for title in [*old, *(title for title in new if title not in old)]:
         before, after = old.get(title, []), new.get(title, [])
+        if title == "losses":  # which there are is a matter of times
+            slow += before != after and [_name(x) for x in before] != [_name(x) for x in after]
+            continue
         if len(before) != len(after):
             print(f"{title}: {len(before)} rows before, {len(after)} now")
-            count += 1
+            wrong += 1
         for was, now in zip(before, after, strict=False):
-            off = [key for key in {*was, *now} if not _same(key, was, now)]
+            off = [key for key in {**was, **now} if not _same(key, was, now)]
             if off:
-                count += 1
-                print(title, {key: (was.get(key), now.get(key)) for key in sorted(off)}, sep=": ")
-    return count
+                timed = all(_timed(key, was) for key in off)
+                wrong, slow = wrong + (not timed), slow + timed
+                changes = (f"{key} {_exact(was.get(key))} → {_exact(now.get(key))}" for key in off)
+                print(f"{title}: {_name(was)}: {', '.join(changes)}")
+    return wrong, slow
+
+
+def _name(row: Row) -> str:
+    return ", ".join(str(x) for x in row.values() if isinstance(x, str) and x)
+
+
+def _exact(value) -> str:
+    return f"{value:.6g}" if isinstance(value, float) else str(value)
+
+
+def _timed(key: str, row: Row) -> bool:
+    """Whether it is a time or a ratio of times."""
+    of_ratio = row.get("from") is not None and key in ("ratio", "measured", "verdict")
+    return of_ratio or key in (*_TIMES, *_SPREADS) or key.endswith(tuple(f", {x}" for x in _TIMES))
 
 
 def _same(key: str, was: Row, now: Row) -> bool:
     a, b = was.get(key), now.get(key)
-    if key in _SPREADS or (a != a and b != b):
+    if key in _SPREADS or a == b or (a != a and b != b):
         return True
-    if key in _TIMES:
-        spread = 1 + max(was["spread"], now["spread"])
-        return a == b or max(a / b, b / a) <= spread
-    if was.get("from") is not None and key in ("ratio", "measured", "verdict"):
-        overlap = now["from"] <= was["to"] and was["from"] <= now["to"]
-        return key == "verdict" or overlap
-    return a == b
+    if a is None or b is None or not _timed(key, was):
+        return False
+    if was.get("from") is not None:
+        return key == "verdict" or (now["from"] <= was["to"] and was["from"] <= now["to"])
+    spread = max(row.get("spread", _ASSUMED) for row in (was, now))
+    return max(a / b, b / a) <= 1 + spread
 
 
 def missed(tables: Tables) -> list[str]:

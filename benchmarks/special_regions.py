@@ -172,4 +172,4 @@ def draw(points: list[Point]) -> None:
             for name, mark in marks.items()
         ]
         figure.legend(handles=handles, loc="outside lower center", ncols=4)
-        figure.savefig(results.FOLDER / "special.png")
+        figure.savefig(results.folder() / "special.png")

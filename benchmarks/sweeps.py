@@ -18,6 +18,8 @@ from .problems import Problem
 from .timing import Timing, side_by_side
 
 RTOL = 1e-8
+FREE, DRIVEN, WAVED = "free, t = 10", "damped and driven, t = 40", "periodic torque, t = 40"
+_CALL = "a call of a compiled program costs some microseconds, whatever it computes"
 
 
 def measure(seed: int, quick: bool) -> results.Tables:
@@ -52,12 +54,13 @@ def measure(seed: int, quick: bool) -> results.Tables:
 
 
 WHY = {
-    ("damped and driven", "heyoka"): "machine code made for this equation, eight lanes at a time, "
+    (FREE, "heyoka"): _CALL,
+    (DRIVEN, "heyoka"): "machine code made for this equation, eight lanes at a time, "
     "with every coefficient computed once; XLA computes the series thrice, for the size of the "
     "step, for θ and for v",
-    ("periodic torque", "heyoka"): "our torque may be any function of time, of which no series is "
+    (WAVED, "heyoka"): "our torque may be any function of time, of which no series is "
     "known, so we take Dopri8; heyoka has the series of this one",
-    ("periodic torque", "diffrax"): "the same formula and steps, in a program that can be "
+    (WAVED, "diffrax"): "the same formula and steps, in a program that can be "
     "differentiated, stops at what is not finite and counts its steps",
 }
 
@@ -77,9 +80,9 @@ def losses(scene: str, spent: dict[tuple[str, int], Timing]) -> list[results.Row
 
 def scenes(v0) -> list[Problem]:
     return [
-        Problem("free", v0, 10.0),
-        Problem("damped and driven", v0, 40.0, beta=0.16, tau=0.15),
-        Problem("periodic torque", v0, 40.0, beta=0.5, tau=0.9, wave=(0.4, 0.6)),
+        Problem(FREE, v0, 10.0),
+        Problem(DRIVEN, v0, 40.0, beta=0.16, tau=0.15),
+        Problem(WAVED, v0, 40.0, beta=0.5, tau=0.9, wave=(0.4, 0.6)),
     ]
 
 
@@ -122,13 +125,13 @@ def draw(rows, quick: bool) -> None:
 
     names = list(dict.fromkeys(row["scene"] for row in rows))
     with style():
-        figure = new_figure(4.4 * len(names), 4.2)
+        figure = new_figure(4.8 * len(names), 4.2)
         for ax, scene in zip(figure.subplots(1, len(names)), names, strict=True):
             for by, mark in zip(("pendax", "diffrax", "heyoka", "SciPy"), "os^D", strict=True):
                 mine = [row for row in rows if row["scene"] == scene and row["by"] == by]
                 ax.loglog([r["lanes"] for r in mine], [r["µs"] for r in mine], mark + "-", label=by)
             ax.set(title=scene, xlabel="lanes", ylabel="run time of a lane / µs")
-        ax.legend()
-        folder = results.QUICK if quick else results.FOLDER
+            ax.legend()
+        folder = results.folder(quick)
         folder.mkdir(parents=True, exist_ok=True)
         figure.savefig(folder / "sweeps.png")

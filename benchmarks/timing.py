@@ -1,5 +1,6 @@
 """Run times that can be compared: warmed up, blocked, interleaved."""
 
+import math
 import time
 from collections.abc import Callable
 from typing import NamedTuple
@@ -33,17 +34,28 @@ class Timing(NamedTuple):
         }
 
 
+_SHORT = 2e-3  # s: what takes less is called again and again, as a loop would, for its mean
+
+
 def side_by_side(calls: dict[str, Callable], rounds: int) -> dict[str, Timing]:
     """Timings of each call, one of each in turn, after one to warm up."""
     spent: dict[str, list[float]] = {name: [] for name in calls}
-    for call in calls.values():
-        jax.block_until_ready(call())
+    times = {}
+    for name, call in calls.items():
+        _seconds(call, 1)
+        times[name] = min(200, max(1, math.ceil(_SHORT / _seconds(call, 1))))
     for _ in range(rounds):
         for name, call in calls.items():
-            start = time.perf_counter()
-            jax.block_until_ready(call())
-            spent[name].append(time.perf_counter() - start)
-    return {name: Timing(tuple(times)) for name, times in spent.items()}
+            spent[name].append(_seconds(call, times[name]))
+    return {name: Timing(tuple(samples)) for name, samples in spent.items()}
+
+
+def _seconds(call: Callable, times: int) -> float:
+    """Of one of so many calls."""
+    start = time.perf_counter()
+    for _ in range(times):
+        jax.block_until_ready(call())
+    return (time.perf_counter() - start) / times
 
 
 def compile_time(function: Callable, *arguments) -> float:

@@ -1,23 +1,33 @@
 """The benchmarks' own arithmetic: timings, bars, what differs, references, the README's blocks."""
 
+import time
+from functools import partial
 from pathlib import Path
 
 import damped_references
 import numpy as np
 import pytest
 
-from benchmarks import TOPICS, problems, readme, report, results
+from benchmarks import TOPICS, front, problems, readme, report, results
 from benchmarks.timing import Timing, side_by_side
 
 ROOT = Path(__file__).parent.parent
 
 
 def test_timings_are_of_the_calls():
-    """Each call once to warm up and once a round, in turn; ratios round by round."""
+    """Each call to warm up, and in turn in each round; ratios round by round."""
     order = []
-    found = side_by_side({"a": lambda: order.append("a"), "b": lambda: order.append("b")}, 3)
-    assert order == list("ababababab"[:2]) + list("ababab")
+
+    def call(name):
+        order.append(name)
+        time.sleep(0.003)
+
+    found = side_by_side({"a": partial(call, "a"), "b": partial(call, "b")}, 3)
+    assert order == list("aabb") + list("ababab")
     assert all(len(timing.samples) == 3 for timing in found.values())
+    short = side_by_side({"a": lambda: order.append("short")}, 3)["a"]
+    assert order.count("short") == 2 + 3 * 200
+    assert short.median < 1e-3
     ratio = Timing((2.0, 3.0, 8.0)).over(Timing((1.0, 1.0, 2.0)))
     assert ratio == {"ratio": 3.0, "from": 2.0, "to": 4.0}
     assert Timing((1.0, 2.0, 3.0)).spread == 1.0  # the shortest was half of the median
@@ -36,21 +46,44 @@ def test_bars():
 
 
 def test_what_differs(capsys):
-    """Errors exactly, times and ratios by their spread."""
+    """Errors exactly, times and ratios by their spread; the first are counted apart."""
     old = {
-        "a": [{"error": 1e-10, "µs": 10.0, "spread": 0.2}],
+        "a": [{"who": "x", "error": 1e-10, "µs": 10.0, "spread": 0.2, "compiling, s": 2.0}],
         "b": [{"ratio": 2.0, "from": 1.8, "to": 2.2}],
     }
-    assert results.differ(old, old) == 0
-    slower = {**old, "a": [{"error": 1e-10, "µs": 11.9, "spread": 0.0}]}
-    assert results.differ(old, slower) == 0
-    assert results.differ(old, {**old, "a": [{"error": 1e-10, "µs": 12.1, "spread": 0.0}]}) == 1
-    wrong = {**old, "a": [{"error": np.nextafter(1e-10, 1), "µs": 10.0, "spread": 0.2}]}
-    assert results.differ(old, wrong) == 1
-    assert results.differ(old, {**old, "b": [{"ratio": 2.5, "from": 2.3, "to": 2.6}]}) == 1
-    assert results.differ(old, {**old, "b": [{"ratio": 2.3, "from": 2.1, "to": 2.6}]}) == 0
-    assert results.differ(old, {"a": old["a"]}) == 1
-    assert "error" in capsys.readouterr().out
+
+    def but(changes):
+        return results.differ(old, {**old, "a": [{**old["a"][0], **changes}]})
+
+    assert results.differ(old, old) == but({"µs": 11.9, "spread": 0.0}) == (0, 0)
+    assert but({"compiling, s": 2.9}) == (0, 0)
+    assert but({"µs": 12.1, "spread": 0.0}) == but({"compiling, s": 3.1}) == (0, 1)
+    assert but({"error": float(np.nextafter(1e-10, 1))}) == but({"error": None}) == (1, 0)
+    assert but({"error": 1e-9, "µs": 20.0}) == (1, 0)
+    assert results.differ(old, {**old, "b": [{"ratio": 2.5, "from": 2.3, "to": 2.6}]}) == (0, 1)
+    assert results.differ(old, {**old, "b": [{"ratio": 2.3, "from": 2.1, "to": 2.6}]}) == (0, 0)
+    assert results.differ(old, {"a": old["a"]}) == (1, 0)
+    assert "a: x: error 1e-10 → 1e-09, µs 10 → 20" in capsys.readouterr().out
+
+
+def test_losses():
+    """Of each peer the smallest error that we don't reach, and where it is fastest; float32 does
+    not count as ours, and errors below the floor are equal."""
+
+    def row(method, error):
+        return {"problem": "p", "method": method, "setting": "", "error": error, "µs": 1.0,
+                "spread": 0.0}  # fmt: skip
+
+    rows = [row("pendax", 1e-8), row("pendax", 1e-12), row("pendax, float32", 1e-16)]
+    rows += [row("a", 1e-14), row("a", 1e-8), row("a", 1e-6), row("b", 1e-12), row("b", 1e-17)]
+    times = [Timing((t,)) for t in (2.0, 4.0, 0.1, 1.0, 1.0, 0.5, 5.0, 9.0)]
+    alone, faster, last = front.losses(rows, times, 1e-15)
+    assert (alone["peer"], alone["error"], alone["ratio"], alone["at"]) == ("a", 1e-14, None, 1)
+    assert (faster["peer"], faster["error"], faster["ratio"], faster["at"]) == ("a", 1e-6, 0.25, 2)
+    assert (last["peer"], last["error"]) == ("b", 1e-17)
+    assert [x["at"] for x in front.losses(rows, times, 1e-11)] == [3]
+    assert [x["pendax, µs"] for x in front.best(rows, 1e-11)] == [1.0, 1.0]
+    assert [x["pendax, µs"] for x in front.best(rows, 1e-15)] == [None, None]
 
 
 def test_markdown():

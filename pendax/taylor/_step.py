@@ -29,8 +29,8 @@ STABLE = 2.0
 class Method(NamedTuple):
     """A step of size h and, from (θ, v), the size that keeps it within the tolerances.
 
-    `series(scene, state)`: what both need, to hand to them, where they aren't to compute it each,
-    else `None`; `turn(scene, state, way, most)`: the size of one on which v keeps the sign `way`, `most` at
+    `series(scene, state)`: what both need, to be handed to them, and `None` where each computes
+    it; `turn(scene, state, way, most)`: the size of one on which v keeps the sign `way`, `most` at
     most, and negative where v comes to nothing at its end; `landed(scene, state)`: from a state
     where v is nothing but for rounding and derivatives, to where it is nothing, and the time.
     """
