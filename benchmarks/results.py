@@ -129,7 +129,8 @@ def _same(key: str, was: Row, now: Row) -> bool:
         return False
     if was.get("from") is not None:
         return key == "verdict" or (now["from"] <= was["to"] and was["from"] <= now["to"])
-    spread = max(row.get("spread", _ASSUMED) for row in (was, now))
+    spreads = (row.get("spread", _ASSUMED) for row in (was, now))
+    spread = max(spreads) if key in _TIMES else _ASSUMED
     return max(a / b, b / a) <= 1 + spread
 
 
