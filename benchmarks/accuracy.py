@@ -30,7 +30,7 @@ PROMISED = {  # by the docstrings
     "elliprg": 5,
     "elliprj": 20,
 }
-POLYNOMIAL = "Cephes: two polynomials and a logarithm; ours: twelve means, each of which rounds"
+POLYNOMIAL = "Cephes: two polynomials and a logarithm; ours: the ladder, each rung of which rounds"
 COMPENSATED = "SciPy's sums carry their rounding errors along; ours don't"
 HALF_PERIODS = "half periods, which are rounded, are taken off u; Cephes leaves that to sin"
 CHANCE = "chance: both are below one eps"

@@ -142,12 +142,9 @@ def free_row(case: Free, dtype: np.dtype) -> dict:
         scale += abs((case.v0 - 2) * float(d[2,][0]))
     unit = float(np.finfo(dtype).eps) * max(scale, float(np.finfo(dtype).tiny))
 
-    def theta(x):
-        return simulate(Pendulum(x[0]), x[1], x[2], x[3]).theta
-
     x = jnp.asarray(point, dtype)
-    error = _off(jax.jit(theta)(x), d[()][0]) / unit
-    slopes, units = np.asarray(jax.jit(jax.jacfwd(theta))(x), float), closed.units(point)
+    error = _off(_free(x), d[()][0]) / unit
+    slopes, units = np.asarray(_free_slopes(x), float), closed.units(point)
     slope_error = 0.0
     for i in closed.ARGUMENTS:
         of_slope = closed.magnitude(point, d, 0, (i,)) + closed.magnitude(point, d, 0) / units[i]
@@ -164,6 +161,14 @@ def free_row(case: Free, dtype: np.dtype) -> dict:
     return row
 
 
+@jax.jit
+def _free(x):
+    return simulate(Pendulum(x[0]), x[1], x[2], x[3]).theta
+
+
+_free_slopes = jax.jit(jax.jacfwd(_free))
+
+
 def solved_row(case: Solved, dtype: np.dtype) -> dict:
     rtol = RTOL[dtype.name]
     names = ("beta", "tau", "epsilon", "v0", "theta0")
@@ -172,9 +177,8 @@ def solved_row(case: Solved, dtype: np.dtype) -> dict:
         true = damped_references.overdamped(*arguments)[0]
     else:
         true = damped_references.trajectory(*arguments, names)[0]
-    run = partial(_simulated, rtol)
     x = jnp.asarray([case.beta, case.tau, case.epsilon, case.v0, case.theta0, case.t], dtype)
-    theta, steps, largest = jax.jit(run)(x)
+    theta, steps, largest = _simulated(rtol, x)
     grid = jnp.linspace(0, case.t, 101)[1:].astype(dtype)
     scene = Pendulum(*(jnp.asarray(c, dtype) for c in (case.epsilon, case.beta, case.tau)))
     v0, theta0 = jnp.asarray(case.v0, dtype), jnp.asarray(case.theta0, dtype)
@@ -182,7 +186,7 @@ def solved_row(case: Solved, dtype: np.dtype) -> dict:
     unit = rtol * (1 + float(largest)) * (1 + kappa)
     error, slope_error = _off(theta, true[0]) / unit, None
     if not case.stiff:
-        slopes = np.asarray(jax.jit(jax.jacfwd(lambda x: run(x)[0]))(x), float)[:5]
+        slopes = np.asarray(_slopes(rtol, x), float)[:5]
         exact, size = np.abs(true[2::2]), np.abs(np.asarray(x, float)[:5])
         units = np.maximum(size, [1, 1, 0, 1, 1])
         scale = exact + (abs(true[0]) + (size * exact).sum()) / units
@@ -196,6 +200,7 @@ def solved_row(case: Solved, dtype: np.dtype) -> dict:
     return row
 
 
+@partial(jax.jit, static_argnums=0)
 def _simulated(rtol, x):
     scene = Pendulum(x[2], x[0], x[1])
     run = simulate(scene, x[5] * jnp.arange(1, 11, dtype=x.dtype) / 10, x[3], x[4], rtol=rtol,
@@ -203,6 +208,11 @@ def _simulated(rtol, x):
     largest = jnp.max(jnp.maximum(jnp.abs(run.theta), jnp.abs(run.v)))
     steps = run.stats.get("steps", jnp.zeros((), int))
     return run.theta[-1], steps, largest
+
+
+@partial(jax.jit, static_argnums=0)
+def _slopes(rtol, x):
+    return jax.jacfwd(lambda x: _simulated(rtol, x)[0])(x)
 
 
 def _row(name, dtype, method, error, slope_error, steps, met) -> dict:
@@ -253,20 +263,23 @@ def _scipy(case: Solved, true: float, unit: float, rtol: float) -> float | None:
 def _diffrax(case: Solved, true: float, unit: float, rtol: float) -> float | None:
     if _too_long(case):
         return None
+    theta, good = _by_diffrax(case.stiff, [jnp.asarray(x) for x in (*case[1:], rtol)])
+    return float(abs(theta - true) / unit) if good else float("inf")
+
+
+@partial(jax.jit, static_argnums=0)
+def _by_diffrax(stiff: bool, numbers):
+    epsilon, beta, tau, v0, theta0, t, rtol = numbers
 
     def field(t, y, args):
-        return y[1], case.tau - case.beta * y[1] - case.epsilon * jnp.sin(y[0])
+        return y[1], tau - beta * y[1] - epsilon * jnp.sin(y[0])
 
-    solver = dfx.Kvaerno5() if case.stiff else dfx.Dopri8()
     run = dfx.diffeqsolve(
-        dfx.ODETerm(field), solver, 0.0, case.t, None,
-        (jnp.asarray(case.theta0), jnp.asarray(case.v0)),
+        dfx.ODETerm(field), dfx.Kvaerno5() if stiff else dfx.Dopri8(), 0.0, t, None, (theta0, v0),
         stepsize_controller=dfx.PIDController(rtol=rtol, atol=rtol), max_steps=1_000_000,
         throw=False, adjoint=dfx.ForwardMode(),
     )  # fmt: skip
-    if not bool(run.result == dfx.RESULTS.successful):
-        return float("inf")
-    return float(abs(run.ys[0][0] - true) / unit)
+    return run.ys[0][0], run.result == dfx.RESULTS.successful
 
 
 def _too_long(case: Solved) -> bool:

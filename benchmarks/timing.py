@@ -43,10 +43,13 @@ def side_by_side(calls: dict[str, Callable], rounds: int) -> dict[str, Timing]:
     times = {}
     for name, call in calls.items():
         _seconds(call, 1)
-        times[name] = min(200, max(1, math.ceil(_SHORT / _seconds(call, 1))))
-    for _ in range(rounds):
+        once = _seconds(call, 1)
+        times[name] = min(200, max(1, math.ceil(_SHORT / once)))
+        spent[name] += [once] * (times[name] == 1)
+    while any(len(samples) < rounds for samples in spent.values()):
         for name, call in calls.items():
-            spent[name].append(_seconds(call, times[name]))
+            if len(spent[name]) < rounds:
+                spent[name].append(_seconds(call, times[name]))
     return {name: Timing(tuple(samples)) for name, samples in spent.items()}
 
 
