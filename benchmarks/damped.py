@@ -45,7 +45,9 @@ _ANY_TORQUE = (
     "our torque may be any function of time, of which no series is known, so we take Dopri8; "
     "heyoka has the series of this one"
 )
-_ORDER_5 = "of order 5, and so with fewer evaluations at coarse tolerances; we take Dopri8 at all"
+_ORDER_5 = (
+    "of order 5, and so with fewer evaluations at coarse tolerances; we take Dopri8 at all of them"
+)
 WHY = {
     ("damped and driven", "heyoka"): _MACHINE_CODE,
     ("damped", "heyoka"): _MACHINE_CODE,

@@ -36,7 +36,9 @@ def text() -> str:
             f"{on['cores']} cores of {on['processor']}, Python {on['python']}, "
             + ", ".join(f"{package} {v}" for package, v in versions.items() if v)
             + f"; seed {content['settings']['seed']}."
-            + "".join(f" Without {peer}, which was not there." for peer in content.get("absent", []))
+            + "".join(
+                f" Without {peer}, which was not there." for peer in content.get("absent", [])
+            )
         )
         if (results.FOLDER / f"{name}.png").exists():
             parts.append(f"![{name}](results/{name}.png)")

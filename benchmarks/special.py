@@ -23,7 +23,7 @@ WHY = {
 
 
 def measure(seed: int, quick: bool) -> results.Tables:
-    size, rounds = (2**14, 3) if quick else (2**20, 3)
+    size, rounds = (2**14, 3) if quick else (2**20, 5)
     rng = np.random.default_rng(seed)
     u, m = rng.uniform(-20, 20, size), rng.uniform(0, 1, size)
     points = [
@@ -32,14 +32,15 @@ def measure(seed: int, quick: bool) -> results.Tables:
         *complete(m, rounds),
         *gradients(u, m, rounds),
     ]
-    more = integrals.speed(size, max(3, rounds // 2), seed, quick)
+    more = integrals.speed(size // 4, rounds, seed, quick)
     regions = [] if quick else special_regions.regions(seed)
     if regions:
         special_regions.draw(regions)
     small, of_small = small_arrays(quick)
     compiling, of_compiling = compile_times(u, m, quick)  # forgets all programs: the last
     return {
-        f"{size:,} elements: u in ±20, φ in ±10, all others in 0 … 1": [
+        f"{size:,} elements of K and sn, cn, dn, {size // 4:,} of the others: u in ±20, φ in ±10, "
+        "all others in 0 … 1": [
             {
                 "work": point.work,
                 "library": point.method,
