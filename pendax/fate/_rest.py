@@ -41,7 +41,6 @@ class _Creep(NamedTuple):
 
 def rest(beta, tau, dry, start: State, most, rtol: float) -> tuple[tuple[Scalar, Scalar], Rest]:
     """Angle and time, with derivatives of every mode and order, and how it came there."""
-
     scene = Scene(jnp.ones_like(dry), beta, tau, dry)
     p, treedef = jax.tree.flatten((scene, start, jnp.asarray(most).astype(dry.dtype)))
 

@@ -175,8 +175,8 @@ def _one(
     )
 
 
-def fate(beta: Scalar, tau: Scalar | None, start: State, most, rtol: float):
-    """Of ε = 1 and τ ≥ 0: how it ends, in which state that was certain, and when."""
+def fate(beta, tau, start: State, most, rtol: float):
+    """Of ε = 1 and τ ≥ 0 or `None`: how it ends, in which state that was certain, and when."""
     scene = Scene(1 + 0 * beta, beta, tau)
     at = saddle(jnp.zeros_like(beta) if tau is None else tau)
     running = None if tau is None else tau > retrapping(beta)
