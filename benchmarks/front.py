@@ -143,8 +143,8 @@ def best(rows, floor: float) -> list[results.Row]:
 
 
 # A colour for each library, a mark for each of its methods, alike in all figures.
-_COLOURS = {"pendax": "C0", "heyoka": "C1", "SciPy": "C2", "Symplectic": "C4"}
-_OTHERS, _MARKS = "C3", "os^vDP*X"  # the others are diffrax's
+COLOURS = {"pendax": "C0", "heyoka": "C1", "SciPy": "C2", "diffrax": "C3", "Symplectic": "C4"}
+_MARKS = "os^vDP*X"
 
 
 def draw(
@@ -186,7 +186,8 @@ def draw(
 def _looks(names: list[str]) -> list[dict]:
     looks, count = [], {}
     for name in names:
-        colour = next((c for word, c in _COLOURS.items() if name.startswith(word)), _OTHERS)
+        colours = (colour for word, colour in COLOURS.items() if name.startswith(word))
+        colour = next(colours, COLOURS["diffrax"])
         count[colour] = count.get(colour, -1) + 1
         looks.append({"color": colour, "marker": _MARKS[count[colour]]})
     return looks

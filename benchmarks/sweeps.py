@@ -13,7 +13,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 
-from . import methods, results
+from . import front, methods, results
 from .problems import Problem
 from .timing import Timing, side_by_side
 
@@ -127,9 +127,10 @@ def draw(rows, quick: bool) -> None:
     with style():
         figure = new_figure(4.8 * len(names), 4.2)
         for ax, scene in zip(figure.subplots(1, len(names)), names, strict=True):
-            for by, mark in zip(("pendax", "diffrax", "heyoka", "SciPy"), "os^D", strict=True):
+            for by, mark in {"pendax": "o", "diffrax": "s", "heyoka": "^", "SciPy": "D"}.items():
                 mine = [row for row in rows if row["scene"] == scene and row["by"] == by]
-                ax.loglog([r["lanes"] for r in mine], [r["µs"] for r in mine], mark + "-", label=by)
+                ax.loglog([r["lanes"] for r in mine], [r["µs"] for r in mine], mark + "-",
+                          label=by, color=front.COLOURS[by])  # fmt: skip
             ax.set(title=scene, xlabel="lanes", ylabel="run time of a lane / µs")
             ax.legend()
         folder = results.folder(quick)
