@@ -41,6 +41,10 @@ _MACHINE_CODE = (
     "machine code made for this equation, eight lanes at a time, with every coefficient computed "
     "once; XLA computes the series thrice, for the size of the step, for θ and for v"
 )
+_SCALAR = (
+    "machine code made for this equation, with every coefficient computed once; XLA computes the "
+    "series thrice, for the size of the step, for θ and for v"
+)
 _ANY_TORQUE = (
     "our torque may be any function of time, of which no series is known, so we take Dopri8; "
     "heyoka has the series of this one"
@@ -51,7 +55,7 @@ _ORDER_5 = (
 WHY = {
     ("damped and driven", "heyoka"): _MACHINE_CODE,
     ("damped", "heyoka"): _MACHINE_CODE,
-    ("barely damped", "heyoka"): _MACHINE_CODE,
+    ("barely damped", "heyoka"): _SCALAR,
     ("under a periodic torque", "heyoka"): _ANY_TORQUE,
     ("under a periodic torque", "Tsit5"): _ORDER_5,
     ("under a periodic torque", "Dopri5"): _ORDER_5,

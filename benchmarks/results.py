@@ -84,11 +84,11 @@ def read(name: str, folder: Path = FOLDER) -> dict:
     return json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
 
 
-def differ(old: Tables, new: Tables) -> tuple[int, int]:
+def differ(old: Tables, new: Tables) -> tuple[int, int, int]:
     """Prints where two runs of one topic differ, and counts them: rows whose errors, or anything
-    else that comes out the same again, do; and those of which only times and ratios do, by more
-    than their spread."""
-    wrong = slow = 0
+    else that comes out the same again, do; rows of which only ratios, or what bars are set on,
+    leave the range of their rounds; and those of which times alone leave their spread."""
+    wrong = ratios = slow = 0
     for title in [*old, *(title for title in new if title not in old)]:
         before, after = old.get(title, []), new.get(title, [])
         if title == "losses":  # which there are is a matter of times
@@ -101,10 +101,12 @@ def differ(old: Tables, new: Tables) -> tuple[int, int]:
             off = [key for key in {**was, **now} if not _same(key, was, now)]
             if off:
                 timed = all(_timed(key, was) for key in off)
-                wrong, slow = wrong + (not timed), slow + timed
+                of_range = timed and any(key in ("ratio", "measured") for key in off)
+                wrong, ratios = wrong + (not timed), ratios + of_range
+                slow += timed and not of_range
                 changes = (f"{key} {_exact(was.get(key))} → {_exact(now.get(key))}" for key in off)
                 print(f"{title}: {_name(was)}: {', '.join(changes)}")
-    return wrong, slow
+    return wrong, ratios, slow
 
 
 def _name(row: Row) -> str:

@@ -31,7 +31,7 @@ from .compared import error_loss
 CLOSED_BAR, CLOSED_SLOPES, SOLVED_BAR, SOLVED_SLOPES = 16, 16, 50, 1000
 RTOL = {"float64": 1e-10, "float32": 1e-5}
 PEERS = ("SciPy, ellipj", "SciPy, solver", "diffrax")
-FEWER = "both are within the tolerance; Radau's estimate is the more cautious"
+FEWER = "both are within the tolerance, and Radau takes 7 to 9 times as many steps"
 WHY = {
     "closed form": "chance: both are below one rounding of the arguments",
     "Taylor series": "both are within the tolerance, which ours use up; Runge–Kutta formulas "
@@ -39,8 +39,7 @@ WHY = {
     **dict.fromkeys(("β = 1e2", "β = 1e5", "β = 1e8", "β = 1e8, τ > ε"), FEWER),
     **dict.fromkeys(
         ("v0 = 1e4", "ε = 1e-12"),
-        "ours use up their tolerance, and the errors of "
-        "their steps add up; Dopri8 estimates more than its error",
+        "both are within the tolerance, of which ours use more",
     ),
 }
 

@@ -55,9 +55,9 @@ def measure(seed: int, quick: bool) -> results.Tables:
 
 WHY = {
     (FREE, "heyoka"): _CALL,
-    (DRIVEN, "heyoka"): "machine code made for this equation, eight lanes at a time, "
-    "with every coefficient computed once; XLA computes the series thrice, for the size of the "
-    "step, for θ and for v",
+    (DRIVEN, "heyoka"): "machine code made for this equation, eight lanes at a time where "
+    "there are enough, with every coefficient computed once; XLA computes the series thrice, for "
+    "the size of the step, for θ and for v",
     (WAVED, "heyoka"): "our torque may be any function of time, of which no series is "
     "known, so we take Dopri8; heyoka has the series of this one",
     (WAVED, "diffrax"): "the same formula and steps, in a program that can be "

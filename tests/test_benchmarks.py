@@ -55,14 +55,14 @@ def test_what_differs(capsys):
     def but(changes):
         return results.differ(old, {**old, "a": [{**old["a"][0], **changes}]})
 
-    assert results.differ(old, old) == but({"µs": 11.9, "spread": 0.0}) == (0, 0)
-    assert but({"compiling, s": 2.9}) == (0, 0)
-    assert but({"µs": 12.1, "spread": 0.0}) == but({"compiling, s": 3.1}) == (0, 1)
-    assert but({"error": float(np.nextafter(1e-10, 1))}) == but({"error": None}) == (1, 0)
-    assert but({"error": 1e-9, "µs": 20.0}) == (1, 0)
-    assert results.differ(old, {**old, "b": [{"ratio": 2.5, "from": 2.3, "to": 2.6}]}) == (0, 1)
-    assert results.differ(old, {**old, "b": [{"ratio": 2.3, "from": 2.1, "to": 2.6}]}) == (0, 0)
-    assert results.differ(old, {"a": old["a"]}) == (1, 0)
+    assert results.differ(old, old) == but({"µs": 11.9, "spread": 0.0}) == (0, 0, 0)
+    assert but({"compiling, s": 2.9}) == (0, 0, 0)
+    assert but({"µs": 12.1, "spread": 0.0}) == but({"compiling, s": 3.1}) == (0, 0, 1)
+    assert but({"error": float(np.nextafter(1e-10, 1))}) == but({"error": None}) == (1, 0, 0)
+    assert but({"error": 1e-9, "µs": 20.0}) == (1, 0, 0)
+    assert results.differ(old, {**old, "b": [{"ratio": 2.5, "from": 2.3, "to": 2.6}]}) == (0, 1, 0)
+    assert results.differ(old, {**old, "b": [{"ratio": 2.3, "from": 2.1, "to": 2.6}]}) == (0, 0, 0)
+    assert results.differ(old, {"a": old["a"]}) == (1, 0, 0)
     assert "a: x: error 1e-10 → 1e-09, µs 10 → 20" in capsys.readouterr().out
 
 

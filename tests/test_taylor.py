@@ -53,7 +53,7 @@ def test_random_scenes(seed, count, dtype):
 
 def test_derivatives():
     """Gradients within 1e-8, Hessians within 1e-6 of their scales, in every mode."""
-    rows = draw(5, 2)
+    rows = draw(5, 4)
     ts, step = [20.0], 1e-5
 
     def last(x):
