@@ -7,10 +7,9 @@ from typing import Any, NamedTuple
 import jax
 
 from . import results
-from .timing import Timing
+from .timing import Timing, expected
 
 _UNITS = {"ns": 1e9, "µs": 1e6, "ms": 1e3, "s": 1.0}
-_ONCE = 0.5  # spread that is assumed of what was timed once
 
 
 class Point(NamedTuple):
@@ -38,24 +37,13 @@ def an_element(timing: Timing, elements: int) -> Timing:
 
 def spent(timing: Timing, unit: str, elements: float = 1) -> results.Row:
     """The columns of a run time, of one of so many elements."""
-    return {unit: timing.median / elements * _UNITS[unit], "spread": _spread(timing)}
+    return {unit: timing.median / elements * _UNITS[unit], "spread": timing.spread}
 
 
 def seconds(timing: Timing) -> results.Row:
     """For a bar on a run time: as `Timing.over`, over one second."""
-    low, high = min(timing.samples), max(timing.samples)
-    if low == high:
-        low, high = low / (1 + _ONCE), high * (1 + _ONCE)
+    low, high = expected(timing.samples)
     return {"ratio": timing.median, "from": low, "to": high}
-
-
-def ratio(a: Timing, b: Timing) -> results.Row:
-    """`a.over(b)`, also where they were not timed in turn."""
-    if len(a.samples) == len(b.samples) > 1:
-        return a.over(b)
-    off = (1 + _spread(a)) * (1 + _spread(b))
-    middle = a.median / b.median
-    return {"ratio": middle, "from": middle / off, "to": middle * off}
 
 
 def losses(points: Iterable[Point], why: dict[str, str]) -> list[results.Row]:
@@ -76,7 +64,7 @@ def losses(points: Iterable[Point], why: dict[str, str]) -> list[results.Row]:
                         "where": ", ".join(filter(None, (ours.work, ours.setting))),
                         "peer": ", ".join(filter(None, (peer.method, peer.setting))),
                         "of": "run time",
-                        **ratio(ours.timing, peer.timing),
+                        **ours.timing.over(peer.timing),
                         "why": reason,
                     }
                 )
@@ -97,11 +85,6 @@ def error_loss(where: str, peer: str, ours: float, theirs: float, why: str) -> r
 
 
 def _ahead(a: Point, b: Point) -> bool:
-    faster = ratio(b.timing, a.timing)
     if a.error == b.error:
-        return faster["from"] > 1  # in every round: else a tie
-    return a.error < b.error and faster["ratio"] > 1
-
-
-def _spread(timing: Timing) -> float:
-    return timing.spread if len(timing.samples) > 1 else _ONCE
+        return a.timing.in_every_round(b.timing)
+    return a.error < b.error and b.timing.over(a.timing)["ratio"] > 1

@@ -46,7 +46,7 @@ def points(problem: str, of: Iterable[Method], truth: Callable, floor: float, si
         each = Timing(tuple(s / method.lanes for s in spent[key].samples))
         rows.append({
             "problem": problem, "method": method.name, "setting": method.setting,
-            "lanes": method.lanes, "µs": each.median * 1e6, "spread": _spread(method, each),
+            "lanes": method.lanes, "µs": each.median * 1e6, "spread": each.spread,
             "error": float(np.max(off / (size if np.ndim(size) == 0 else size[: len(found)]))),
         })  # fmt: skip
         timings.append(each)
@@ -55,14 +55,10 @@ def points(problem: str, of: Iterable[Method], truth: Callable, floor: float, si
 
 
 def _once(call) -> Timing:
-    """Of what takes tens of seconds: no warming up, and the one run stands for all rounds."""
+    """Of what takes tens of seconds: one run, and no warming up."""
     start = time.perf_counter()
     jax.block_until_ready(call())
-    return Timing((time.perf_counter() - start,) * ROUNDS)
-
-
-def _spread(method, timing) -> float:
-    return 0.5 if method.slow else timing.spread
+    return Timing((time.perf_counter() - start,))
 
 
 def _floor(problem, true) -> float:

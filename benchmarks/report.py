@@ -19,8 +19,9 @@ def text() -> str:
         "# Error against run time, stability, and what a scene costs",
         "Written by `python -m benchmarks` out of benchmarks/results; `python -m benchmarks "
         "--verify` measures again and compares. Times are medians of rounds in turn, each method "
-        "warmed up and blocked; *spread* is how far a round lay from the median, relative, and 0.5 "
-        "where there was one round; *from* and *to* are the least and largest ratio of a round. A "
+        "warmed up and blocked. Another run's median is expected in 99 of 100 to be off by no more "
+        "than *spread*, relative (by Student's t of the rounds; 0.5 is assumed of what was timed "
+        "once), and another run's ratio to lie between *from* and *to*. A "
         "*lane* is one of the pendulums that are followed side by side, a *bar* what was aimed "
         "at. heyoka runs a thread on each core, XLA (pendax, diffrax, jaxellip, "
         "elliptic-functions) as many as it likes, SciPy, GSL, Boost, mpmath and pyjjasim one. "

@@ -14,9 +14,11 @@ import time
 from pathlib import Path
 
 from . import results
+from .compared import seconds
 from .timing import Timing
 
 ROUNDS, QUICK_ROUNDS = 3, 1
+IMPORTED = 7  # rounds of imports, which are short
 HEAVY = ("diffrax", "optax", "optimistix", "lineax", "matplotlib", "scipy")
 ALL_KEPT = {
     "JAX_PERSISTENT_CACHE_MIN_COMPILE_TIME_SECS": "0",
@@ -79,8 +81,9 @@ LIMITS = {CLOSED: (3, 2), TAYLOR: (3, 2), DIFFRAX: (6, 3)}  # s, without and wit
 def measure(seed: int, quick: bool) -> results.Tables:
     del seed  # nothing is drawn
     rounds = QUICK_ROUNDS if quick else ROUNDS
+    imported = QUICK_ROUNDS if quick else IMPORTED
     with tempfile.TemporaryDirectory() as folder:
-        imports, bars = _imports(rounds)
+        imports, bars = _imports(imported)
         loaded, more = ([], []) if quick else _loaded()
         sweeps, last = ([], []) if quick else _cold_starts(rounds, Path(folder))
     return {"imports": imports, "loaded": loaded, "cold start": sweeps, "bars": bars + more + last}
@@ -149,9 +152,8 @@ def _cold_starts(rounds: int, folder: Path):
             "spread": timing.spread, "programs": built, "that no cache keeps": unkept,
         })  # fmt: skip
         limit = LIMITS[kinds[name]][cache == "yes"]
-        second = timing.over(Timing((1.0,) * len(timing.samples)))
         what = f"{name}, {'a warm' if cache == 'yes' else 'no'} cache: s"
-        bars.append(results.bar(what, second, at_most=limit))
+        bars.append(results.bar(what, seconds(timing), at_most=limit))
     return rows, bars
 
 

@@ -18,6 +18,7 @@ from .problems import Problem
 from .timing import Timing, side_by_side
 
 RTOL = 1e-8
+ROUNDS = 5
 FREE, DRIVEN, WAVED = "free, t = 10", "damped and driven, t = 40", "periodic torque, t = 40"
 _CALL = "a call of a compiled program costs some microseconds, whatever it computes"
 
@@ -35,7 +36,7 @@ def measure(seed: int, quick: bool) -> results.Tables:
             built = {name: _compiled(run, given) for name, run in programs.items()}
             calls = {name: partial(one[0], given) for name, one in built.items()}
             calls |= peers(problem, v0[:count])
-            spent = side_by_side(calls, 3)
+            spent = side_by_side(calls, ROUNDS)
             for name, timing in spent.items():
                 each = Timing(tuple(s / count for s in timing.samples))
                 per_lane[name, count] = timing
@@ -69,11 +70,11 @@ def losses(scene: str, spent: dict[tuple[str, int], Timing]) -> list[results.Row
     """Where a peer was faster in every round."""
     rows = []
     for (name, count), timing in spent.items():
-        ratio = spent["pendax", count].over(timing)
-        if name != "pendax" and ratio["from"] > 1:
+        ours = spent["pendax", count]
+        if name != "pendax" and timing.in_every_round(ours):
             rows.append({
-                "where": f"{scene}, {count} lanes", "peer": name, "of": "run time", **ratio,
-                "why": WHY.get((scene, name), ""),
+                "where": f"{scene}, {count} lanes", "peer": name, "of": "run time",
+                **ours.over(timing), "why": WHY.get((scene, name), ""),
             })  # fmt: skip
     return rows
 

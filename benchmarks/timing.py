@@ -8,9 +8,15 @@ from typing import NamedTuple
 import jax
 import numpy as np
 
+_ONCE = 0.5  # spread that is assumed of what was timed once
+_OF_100 = 99  # medians of other runs that a stated spread should hold
+
 
 class Timing(NamedTuple):
-    """Seconds of one call, in the order of the rounds."""
+    """Seconds of one call, in the order of the rounds.
+
+    A spread says where the median of another run is to be expected.
+    """
 
     samples: tuple[float, ...]
 
@@ -20,18 +26,44 @@ class Timing(NamedTuple):
 
     @property
     def spread(self) -> float:
-        """How far a run may lie from the median: the farthest did, relative."""
-        low, high = min(self.samples), max(self.samples)
+        """How far from the median it may lie, relative."""
+        low, high = expected(self.samples)
         return max(high / self.median, self.median / low) - 1
 
     def over(self, other: "Timing") -> dict[str, float]:
-        """The ratio of two that were timed in turn, and the least and largest of the rounds'."""
-        ratios = np.divide(self.samples, other.samples)
-        return {
-            "ratio": float(np.median(ratios)),
-            "from": float(ratios.min()),
-            "to": float(ratios.max()),
-        }
+        """The ratio of two, and from where to where that of another run is to be expected.
+
+        It is that of the rounds where both were timed in turn.
+        """
+        if len(self.samples) == len(other.samples) > 1:
+            ratios = np.divide(self.samples, other.samples)
+            low, high = expected(ratios)
+            return {"ratio": float(np.median(ratios)), "from": low, "to": high}
+        off = (1 + self.spread) * (1 + other.spread)
+        middle = self.median / other.median
+        return {"ratio": middle, "from": middle / off, "to": middle * off}
+
+    def in_every_round(self, other: "Timing") -> bool:
+        """Whether it was faster in each: else they tie."""
+        if len(self.samples) == len(other.samples) > 1:
+            return bool(np.all(np.less(self.samples, other.samples)))
+        return self.over(other)["to"] < 1
+
+
+def expected(values) -> tuple[float, float]:
+    """Between which the median of as many other values is to be expected in 99 of 100 runs.
+
+    By Student's t of the logarithms, whose median has the variance π σ²/(2 n); at least from the
+    smallest to the largest of these.  What differs from run to run alone is not in it.
+    """
+    from scipy.stats import t
+
+    count, median = len(values), float(np.median(values))
+    off = 1 + _ONCE
+    if count > 1:
+        quantile = t.ppf(0.5 + _OF_100 / 200, count - 1)
+        off = np.exp(quantile * np.std(np.log(values), ddof=1) * np.sqrt(np.pi / count))
+    return float(min(median / off, *values)), float(max(median * off, *values))
 
 
 _SHORT = 2e-3  # s: what takes less is called again and again, as a loop would, for its mean

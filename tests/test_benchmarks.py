@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from benchmarks import TOPICS, front, problems, readme, report, results
-from benchmarks.timing import Timing, side_by_side
+from benchmarks.timing import Timing, expected, side_by_side
 
 ROOT = Path(__file__).parent.parent
 
@@ -29,8 +29,26 @@ def test_timings_are_of_the_calls():
     assert order.count("short") == 2 + 3 * 200
     assert short.median < 1e-3
     ratio = Timing((2.0, 3.0, 8.0)).over(Timing((1.0, 1.0, 2.0)))
-    assert ratio == {"ratio": 3.0, "from": 2.0, "to": 4.0}
-    assert Timing((1.0, 2.0, 3.0)).spread == 1.0  # the shortest was half of the median
+    assert ratio["ratio"] == 3.0
+    assert (ratio["from"], ratio["to"]) == expected((2.0, 3.0, 4.0))
+    once = Timing((3.0,)).over(Timing((2.0, 2.0)))
+    assert once == {"ratio": 1.5, "from": 1.0, "to": 2.25}  # a spread of a half is assumed
+    assert Timing((1.0, 2.0)).in_every_round(Timing((2.0, 3.0)))
+    assert not Timing((1.0, 2.0)).in_every_round(Timing((2.0, 2.0)))
+
+
+@pytest.mark.parametrize("rounds", [3, 5, 20])
+def test_medians_of_other_runs_are_in_the_spread(rounds):
+    """Of runs of which each round is off by chance alone, 1 of 100 lies outside."""
+    rng = np.random.default_rng(3)
+    runs = np.exp(rng.normal(0.0, 0.1, (2, 2000, rounds)))
+    outside = 0
+    for first, second in zip(*runs, strict=True):
+        low, high = expected(first)
+        assert low <= first.min() <= first.max() <= high
+        outside += not low <= np.median(second) <= high
+    assert outside <= 0.02 * 2000
+    assert Timing(tuple(runs[0, 0])).spread > 0
 
 
 def test_bars():
@@ -39,7 +57,7 @@ def test_bars():
     assert results.bar("x", 0.9, at_least=1.0)["verdict"] == "missed"
     assert results.bar("x", float("nan"), at_least=1.0)["verdict"] == "skipped"
     row = results.bar("x", Timing((2.0, 4.0)).over(Timing((1.0, 1.0))), at_most=1.0)
-    assert (row["measured"], row["from"], row["to"]) == (3.0, 2.0, 4.0)
+    assert (row["measured"], row["from"], row["to"]) == (3.0, *expected((2.0, 4.0)))
     assert results.missed({"bars": [row]}) == ["x"]
     with pytest.raises(ValueError, match="at_most"):
         results.bar("x", 1.0)
@@ -55,13 +73,19 @@ def test_what_differs(capsys):
     def but(changes):
         return results.differ(old, {**old, "a": [{**old["a"][0], **changes}]})
 
-    assert results.differ(old, old) == but({"µs": 11.9, "spread": 0.0}) == (0, 0, 0)
+    assert results.differ(old, old) == but({"µs": 11.9, "spread": 9.0}) == (0, 0, 0)
     assert but({"compiling, s": 2.9}) == (0, 0, 0)
-    assert but({"µs": 12.1, "spread": 0.0}) == but({"compiling, s": 3.1}) == (0, 0, 1)
+    assert but({"µs": 12.1, "spread": 9.0}) == but({"compiling, s": 3.1}) == (0, 0, 1)
     assert but({"error": float(np.nextafter(1e-10, 1))}) == but({"error": None}) == (1, 0, 0)
     assert but({"error": 1e-9, "µs": 20.0}) == (1, 0, 0)
-    assert results.differ(old, {**old, "b": [{"ratio": 2.5, "from": 2.3, "to": 2.6}]}) == (0, 1, 0)
-    assert results.differ(old, {**old, "b": [{"ratio": 2.3, "from": 2.1, "to": 2.6}]}) == (0, 0, 0)
+    assert results.differ(old, {**old, "b": [{"ratio": 2.3, "from": 2.1, "to": 2.6}]}) == (0, 1, 0)
+    assert results.differ(old, {**old, "b": [{"ratio": 2.1, "from": 2.0, "to": 2.6}]}) == (0, 0, 0)
+    lost = {"where": "x", "ratio": 2.0, "from": 1.8, "to": 2.2, "at": 3}
+    both = {"losses": [lost, {**lost, "where": "y"}]}
+    assert results.differ(both, {"losses": [{**lost, "at": 4}]}) == (0, 0, 1)
+    assert results.differ(both, {"losses": [{**lost, "ratio": 3.0}]}) == (0, 1, 1)
+    error = {"where": "x", "of": "error", "ratio": 2.0, "from": None, "to": None}
+    assert results.differ({"losses": [error]}, {"losses": [{**error, "ratio": 2.1}]}) == (1, 0, 0)
     assert results.differ(old, {"a": old["a"]}) == (1, 0, 0)
     assert "a: x: error 1e-10 → 1e-09, µs 10 → 20" in capsys.readouterr().out
 
