@@ -81,6 +81,30 @@ def test_derivatives():
         assert np.abs(hessian(row) - curvature).max() < 1e-6 * np.abs(curvature).max()
 
 
+@cache
+def true_slope(epsilon, beta, tau, v0):
+    """θ(10), and by ε."""
+    row = references.trajectory(epsilon, beta, tau, 0.0, v0, [10.0], ["epsilon"])[0]
+    return row[0], row[2]
+
+
+@pytest.mark.parametrize("mode", [jax.jacfwd, jax.grad])
+def test_derivatives_of_fast_rotations(mode, dtype):
+    """∂θ/∂ε while the motion knows little of ε, whose steps could be longer than a turn."""
+    rtol = 1e-10 if dtype == np.float64 else 1e-6
+    epsilon = np.array([1.0, 2.0**-7, 2.0**-13, 2.0**-40, 2.0**-100], dtype)
+    v0 = np.array([100.0, 2.0, 2.0, 2.0, 2.0], dtype)
+    for beta, tau in ((None, 0.25), (0.125, None), (0.125, 0.25)):
+
+        def last(epsilon, v0, beta=beta, tau=tau):
+            return simulate(Pendulum(epsilon, beta, tau), 10.0, v0, rtol=rtol).theta
+
+        found = jax.jit(jax.vmap(mode(last)))(epsilon, v0)
+        for slope, *row in zip(found, epsilon.tolist(), v0.tolist(), strict=True):
+            theta, true = true_slope(row[0], beta or 0.0, tau or 0.0, row[1])
+            assert abs(slope - true) < 10 * rtol * (1 + abs(theta)), (beta, tau, row)
+
+
 def test_memory_of_a_gradient_does_not_grow_with_the_steps():
     def memory(t):
         gradient = jax.grad(lambda v0: simulate(Pendulum(1.0, 1e-3, 0.1), t, v0, throw=False).theta)

@@ -127,10 +127,12 @@ def march(
         longest, on, begin = 1.0, switched.until, switched.begun
         most = 10 if isinstance(scene.tau, SampledTorque) else 12 if tangents else 16
     order = order_for(rtol, atol, most)
-    full, slow = (
-        kind(n, rtol, atol, min(longest, for_tangents(n, rtol, atol)) if tangents else longest)
-        for kind, n in ((taylor, order), (overdamped, 8))
+    least = min(rtol, atol) if tangents else None
+    of_full, of_slow = (
+        min(longest, for_tangents(n, rtol, atol)) if tangents else longest for n in (order, 8)
     )
+    full = taylor(order, rtol, atol, of_full, least)
+    slow = overdamped(8, rtol, atol, of_slow)
 
     def to_next(at: Any, t):
         if not stiff:

@@ -80,4 +80,4 @@ def _series(order: int, sweeps: int, scene: Scene, state: State):
 
     # A loop, that its program be small.
     w = lax.fori_loop(0, sweeps, sweep, jnp.zeros(order + 2, rate.dtype))
-    return rate, list(w[: order + 1])
+    return rate, list(w[: order + 1]), None

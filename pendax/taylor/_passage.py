@@ -67,7 +67,7 @@ def _fraction(theta: Scalar, after: Scalar) -> Scalar:
 
 
 def _size(scene: Scene, state: State, tolerance: Scalar) -> Scalar:
-    rate, v = scaled_series(_ORDER, scene, state)
+    rate, v, _ = scaled_series(_ORDER, scene, state)
     return (jnp.maximum(jnp.abs(v[-2]), jnp.abs(v[-1])) / tolerance) ** (-1 / _ORDER) / rate
 
 
@@ -78,16 +78,16 @@ def _after(scene: Scene, state: State, h: Scalar) -> tuple[State, Scalar]:
 
 
 def _theta(scene: Scene, state: State, h: Scalar) -> Scalar:
-    rate, v = scaled_series(_ORDER, scene, state)
+    rate, v, _ = scaled_series(_ORDER, scene, state)
     return state.theta + h * rate * polynomial(integrated(v[:-1]), h * rate)
 
 
 def _velocity(scene: Scene, state: State, h: Scalar) -> Scalar:
-    rate, v = scaled_series(_ORDER, scene, state)
+    rate, v, _ = scaled_series(_ORDER, scene, state)
     return rate * polynomial(v, h * rate)
 
 
 def _action(scene: Scene, state: State, h: Scalar) -> Scalar:
-    rate, v = scaled_series(_ORDER, scene, state)
+    rate, v, _ = scaled_series(_ORDER, scene, state)
     square = [sum(v[k] * v[n - k] for k in range(n + 1)) for n in range(_ORDER)]
     return h * rate * rate * polynomial(integrated(square), h * rate)

@@ -86,6 +86,7 @@ class State(NamedTuple):
 
 @partial(jax.jit, static_argnums=0)  # traced once
 def scaled_series(order: int, scene: Scene, state: State):
+    """A rate, and the coefficients of v / rate and of sin θ in rate · t."""
     rate = jnp.sqrt(scene.epsilon)
     for other in (jnp.abs(state.v), scene.beta):
         rate = rate if other is None else jnp.maximum(rate, other)
@@ -110,7 +111,7 @@ def scaled_series(order: int, scene: Scene, state: State):
         sine, cosine = sine_and_cosine(theta, sines, cosines)
         sines.append(sine)
         cosines.append(cosine)
-    return rate, v
+    return rate, v, sines
 
 
 def _power_of_two_above(x: Scalar) -> Scalar:
@@ -118,7 +119,7 @@ def _power_of_two_above(x: Scalar) -> Scalar:
     whole = jnp.int64 if x.dtype == jnp.float64 else jnp.int32
     exponent = lax.bitcast_convert_type(jnp.asarray(jnp.inf, x.dtype), whole)
     below = lax.bitcast_convert_type(lax.bitcast_convert_type(x, whole) & exponent, x.dtype)
-    return 2 * below
+    return jnp.minimum(2 * below, 1 / jnp.finfo(x.dtype).tiny)  # of which 1/rate is a number
 
 
 def force(scene: Scene, sines, v, n: int) -> Scalar:

@@ -50,18 +50,21 @@ def order_for(rtol: float, atol: float, most: int = 20) -> int:
     return max(10, min(most, round(4 - 0.5 * math.log(min(rtol, atol)))))
 
 
-def taylor(order: int, rtol: float, atol: float, longest: float = STABLE) -> Method:
+def taylor(
+    order: int, rtol: float, atol: float, longest: float = STABLE, forced: float | None = None
+) -> Method:
     """Steps of given `order`, errors within atol + rtol |y| in θ and in v each.
 
     At rest the motion's own series says nothing, and perturbations still move like e^(λt) with
-    |λ| ≤ √ε or β: no step is longer than `longest` over the larger of these.
+    |λ| ≤ √ε or β: no step is longer than `longest` over the larger of these.  What moves them
+    with ε is sin θ, of which a fast rotation tells nothing: its series is within `forced`.
     """
 
     def quickest(scene):
         rate = jnp.sqrt(scene.epsilon)
         return rate if scene.beta is None else jnp.maximum(rate, scene.beta)
 
-    return method(scaled_series, order, rtol, atol, quickest, longest)
+    return method(scaled_series, order, rtol, atol, quickest, longest, forced=forced)
 
 
 def for_tangents(order: int, rtol: float, atol: float) -> float:
@@ -80,20 +83,22 @@ def method(
     quickest: Callable,
     longest: float,
     cut: Callable = stage,
+    forced: float | None = None,
 ) -> Method:
-    """Of `series_of(order, scene, state)`: a rate, the coefficients of v / rate in rate · t."""
+    """Of `series_of(order, scene, state)`: a rate, the coefficients in rate · t of v / rate and,
+    where `forced` is an error allowed for them, of sin θ."""
     series = partial(series_of, order)
 
     def shared(scene, state):
         return series(scene, state) if cut is plain else None
 
     def theta_after(scene, state, h, known=None):
-        rate, v = known or series(scene, state)
+        rate, v, _ = known or series(scene, state)
         return state.theta + h * rate * polynomial(integrated(v[:-1]), h * rate)
 
     def v_after(scene, state, h, known=None):
         # On a slow manifold the series starts from a v of its own.
-        rate, v = known or series(scene, state)
+        rate, v, _ = known or series(scene, state)
         return rate * (v[0] + h * rate * polynomial(v[1:], h * rate))
 
     def step(scene, state, h, known=None):
@@ -101,7 +106,7 @@ def method(
         return State(cut(theta_after, *given), cut(v_after, *given))
 
     def size_of(scene, state, known=None):
-        rate, v = known or series(scene, state)
+        rate, v, sines = known or series(scene, state)
         theta = integrated(v)
         allowed = [atol + rtol * jnp.abs(x) for x in state]
 
@@ -110,6 +115,8 @@ def method(
             share = jnp.maximum(
                 jnp.abs(theta[n - 1]) / allowed[0], rate * jnp.abs(v[n]) / allowed[1]
             )
+            if forced is not None:
+                share = jnp.maximum(share, jnp.abs(sines[n]) / forced)
             return share ** (-1 / n)
 
         own = jnp.minimum(within(order - 1), within(order)) / rate
@@ -121,7 +128,7 @@ def method(
 
     def turn_of(scene, state, way, most):
         h = jnp.minimum(size_of(scene, state), most)
-        rate, v = series(scene, state)
+        rate, v, _ = series(scene, state)
         v = [way * x for x in v]
         # From rest v is t times what has no zero at the start; there it can't go the other way.
         rest = v[0] == 0
@@ -135,7 +142,7 @@ def method(
         return cut(turn_of, *lax.stop_gradient((scene, state, way, most)))
 
     def landed(scene, state):
-        rate, v = series_of(_BRIEF, scene, state)
+        rate, v, _ = series_of(_BRIEF, scene, state)
         slopes = [n * x for n, x in enumerate(v)][1:]
         x = -v[0] / v[1]
         x = x - polynomial(v, x) / polynomial(slopes, x)
