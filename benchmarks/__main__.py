@@ -46,8 +46,8 @@ def _one(name: str, options: argparse.Namespace) -> int:
     jax.clear_caches()
     jax.config.update("jax_enable_x64", True)
     settings = {"seed": options.seed, "quick": options.quick}
-    if options.seed != results.SEED and not options.quick:
-        results.elsewhere(results.FOLDER / "other")
+    if options.seed != results.SEED:
+        results.elsewhere(results.FOLDER / "other" / ("quick" if options.quick else ""))
     if options.verify and not (kept := _kept(name, settings)):
         return 2
     started = time.perf_counter()
@@ -67,7 +67,10 @@ def _one(name: str, options: argparse.Namespace) -> int:
     print(f"\n{name}: {time.perf_counter() - started:.0f} s; missed: {'; '.join(missed) or 'none'}")
     if options.verify:
         wrong, ratios, slow = results.differ(kept["tables"], tables)
-        print(f"{name}: rows that differ: {wrong}; in ratios: {ratios}; in times alone: {slow}")
+        print(
+            f"{name}: {'FAILED' if wrong + ratios else 'verified'}; errors differ in {wrong} rows, "
+            f"ratios leave their range in {ratios}, times alone their spread in {slow}"
+        )
         return int(wrong + ratios > 0)
     print(f"written: {path}", flush=True)
     return int(options.check and bool(missed))
@@ -81,7 +84,8 @@ def _kept(name: str, settings: dict) -> dict | None:
     elif (known := results.read(name, path.parent))["settings"] == settings:
         return known
     else:
-        print(f"{name}: {path} is of {known['settings']}, not {settings}")
+        of = known["settings"]["seed"]
+        print(f"{name}: {path} is of seed {of}, not {settings['seed']}: measure that first")
     return None
 
 
@@ -91,18 +95,29 @@ def _flags(options: argparse.Namespace) -> list[str]:
 
 
 def _parser() -> argparse.ArgumentParser:
-    text = "All take half an hour on two cores.  Peers that are not installed are left out."
+    text = (
+        "All take half an hour on two cores, and are written topic by topic.  "
+        "Peers that are not installed are left out."
+    )
     parser = argparse.ArgumentParser("python -m benchmarks", description=__doc__, epilog=text)
     add = parser.add_argument
     add("topics", nargs="*", metavar="TOPIC", help="all, if none is named; see --list")
     add("--list", action="store_true", help="the topics, a line each")
     add("--quick", action="store_true", help="fewer points and rounds, into results/quick")
-    add("--seed", type=int, default=results.SEED, help="other points, into results/other")
-    add("--check", action="store_true", help="exit 1 where a bar, what is aimed at, is missed")
-    add("--verify", action="store_true",
-        help="compare with the results that are there, and leave them; exit 1 if errors "
+    add("--seed", type=_seed, default=results.SEED, help="other points, into results/other")
+    judged = parser.add_mutually_exclusive_group().add_argument
+    judged("--check", action="store_true",
+        help="measure, and exit 1 where a bar, what is aimed at, is missed")  # fmt: skip
+    judged("--verify", action="store_true",
+        help="measure and compare with the results that are there, which stay; exit 1 if errors "
         "differ or ratios leave their range, 2 if there are none; times are reported")  # fmt: skip
     return parser
+
+
+def _seed(text: str) -> int:
+    if (seed := int(text)) < 0:
+        raise argparse.ArgumentTypeError(f"must be 0 or more, but got {seed}")
+    return seed
 
 
 if __name__ == "__main__":

@@ -79,11 +79,13 @@ def costs(seed: int, size: int, rounds: int) -> tuple[list[results.Row], list[re
     calls = {
         "ellipj, one m": partial(jax.jit(special.ellipj), t, 0.7),
         "one pendulum, many times": partial(jax.jit(trajectory), t, *one),
-        "the same, θ alone": partial(jax.jit(lambda *x: trajectory(*x)[0]), t, *one),
-        "the same, with the gradient in v0": partial(jax.jit(of_v0), t, *one),
+        "one pendulum, many times, θ alone": partial(
+            jax.jit(lambda *x: trajectory(*x)[0]), t, *one
+        ),
+        "one pendulum, many times, with the gradient in v0": partial(jax.jit(of_v0), t, *one),
         "ellipj, u and m": partial(jax.jit(special.ellipj), t, m),
         "many pendulums, one time": partial(jax.jit(pendulums), epsilon, v0, theta0),
-        "the same, with the gradient in ε, v0, θ0": partial(
+        "many pendulums, with the gradient in ε, v0, θ0": partial(
             jax.jit(partial(with_gradient, pendulums)), epsilon, v0, theta0
         ),
     }
@@ -131,7 +133,7 @@ def sciml(quick: bool) -> list[results.Row]:
             drift = np.asarray(energy(Pendulum(), q, p)) / (2 * k * k) - 1
             time = spent[method, setting]
             rows.append({
-                "k": k, "method": method, "setting": setting, "ms": time.median * 1e3,
+                "k": f"{k:g}", "method": method, "setting": setting, "ms": time.median * 1e3,
                 "spread": time.spread, "error of q": float(np.max(np.abs(q - true))),
                 "of the energy": float(np.max(np.abs(drift))),
             })  # fmt: skip

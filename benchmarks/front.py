@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterable
 import jax
 import numpy as np
 
+from pendax import simulate
+
 from . import methods, results
 from .methods import Method
 from .problems import Problem
@@ -63,7 +65,9 @@ def _once(call) -> Timing:
 
 def _floor(problem, true) -> float:
     """What the roundings of t and θ alone may do: nothing is told by errors below."""
-    return 2 * EPS * float(np.max(np.abs(true)) + problem.t * np.max(np.abs(problem.v0)))
+    v0 = problem.v0[: len(true)]
+    last = simulate(problem.pendulum, problem.t, v0, problem.theta0, throw=False).v
+    return 2 * EPS * float(np.max(np.abs(true) + problem.t * np.abs(last)))
 
 
 def _ours(rows, floor: float, error: float) -> list[int]:

@@ -34,7 +34,7 @@ def measure(seed: int, quick: bool) -> results.Tables:
             for name, error, _ in voltages
         ],
         "I–V curves": curves,
-        "falling branch at β_c = 10": [
+        f"falling branch at β_c = 10, {points[0].work}": [
             {
                 "method": point.method,
                 "setting": point.setting,

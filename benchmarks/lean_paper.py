@@ -51,8 +51,9 @@ One step of Taylor's method of order N: 2 N (N − 1) − 1 for the series of si
 term m products, m − 1 sums and a division; N products by ε, N − 1 divisions; sine and cosine, ε
 and v in the rate's unit, the rate, 10 in all.  Its size: two terms of θ and v against their
 tolerances, two powers, 23.  θ and v by Horner 5 N.  Time 6.  β adds two operations to each term,
-and 3; a torque 4.  A tangent, of p: one sum of m + 1 products for each sine, none of cosines; 5
-for each term of the force, with β 9, with τ 3 in all; Horner 4 N; 6 beside.
+and 3; a torque 4.  With tangents the size needs two terms of sin θ as well, one of them not needed
+by v, against what is allowed: 2 N + 6.  A tangent, of p: one sum of m + 1 products for each sine,
+none of cosines; 5 for each term of the force, with β 9, with τ 3 in all; Horner 4 N; 6 beside.
 """
 
 FREE = {"θ": 199, "v": 147, "θ and v": 206, "final θ": 199 + 291}
@@ -98,7 +99,8 @@ def step(
     order = order or (WITH_TANGENTS if directions else ORDER)
     terms = {"beta": beta, "tau": tau}
     value = series(order, **terms) + _SIZE + beta + 5 * order + _TIME
-    return value + directions * tangent(order, **terms)
+    forced = 2 * order + 6 if directions else 0
+    return value + forced + directions * tangent(order, **terms)
 
 
 def slow_step(order: int = 8, sweeps: int = 5) -> int:

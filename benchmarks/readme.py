@@ -74,10 +74,10 @@ def free(tables: Tables) -> str:
         f"{front('free', tables)}\n\n"
         f"In arrays of 2²⁰ a time costs {shown(cost['one pendulum, many times'])} ns, a pendulum "
         f"of its own {shown(cost['many pendulums, one time'])} ns, and with its gradient in ε, v0 "
-        f"and θ0 {shown(cost['the same, with the gradient in ε, v0, θ0'])} ns. On the separatrix "
-        f"itself, v0 = 2√ε, the pendulum nears the top and stays; all {len(fell)} solvers and "
-        f"settings fell off, the last of them, {longest['method']} at {longest['setting']}, after "
-        f"{shown(longest['off by 0.1 rad at t'])} s (ε = 1 1/s²)."
+        f"and θ0 {shown(cost['many pendulums, with the gradient in ε, v0, θ0'])} ns. On the "
+        f"separatrix itself, v0 = 2√ε, the pendulum nears the top and stays; all {len(fell)} "
+        f"solvers and settings fell off, the last of them, {longest['method']} at "
+        f"{longest['setting']}, after {shown(longest['off by 0.1 rad at t'])} s (ε = 1 1/s²)."
     )
 
 
@@ -97,10 +97,10 @@ def damped(tables: Tables) -> str:
 
 
 def gradients(tables: Tables) -> str:
-    return front("gradients", tables)
+    return front("gradients", tables, "over 1 + |gradient|")
 
 
-def front(name: str, tables: Tables) -> str:
+def front(name: str, tables: Tables, unit: str = "in rad") -> str:
     """What each library reaches, at which run time, and how long we take to be as exact."""
     lines = []
     for problem, here in _groups(tables["at each peer's least error"], "problem").items():
@@ -117,12 +117,16 @@ def front(name: str, tables: Tables) -> str:
             )
         lines.append(line)
     return "\n\n".join([
-        "Of each library the fastest of its methods within twice its least error: that error / "
-        "rad, its run time and that of pendax to be as exact, a lane:",
+        f"Of each library the fastest of its methods within twice its least error: that error, "
+        f"{unit}, its run time and that of pendax to be as exact, a lane{_FLOOR[name]}:",
         results.markdown(lines),
         _figure(name),
         report.losses(tables),
     ])  # fmt: skip
+
+
+_ANGLES = " (below the roundings of θ and of t, 2 eps (|θ| + t |v|), all are as exact)"
+_FLOOR = {"free": _ANGLES, "damped": _ANGLES, "gradients": " (below 1e-13 all are as exact)"}
 
 
 def _library(peer: str) -> str:
@@ -166,16 +170,19 @@ def junction(tables: Tables) -> str:
     )
     largest = _columns(_table(tables, "voltages"), ("voltages", "scenes", "largest error"))
     branch = _columns(_table(tables, "falling"), ("method", "setting", "s", "error / Ic R"))
-    return f"{curves}.\n\n{largest}\n\n{branch}\n\n{_figure('junction')}"
+    title = next(name for name in tables if name.startswith("falling"))
+    return f"{curves}.\n\n{largest}\n\n{title}:\n\n{branch}\n\n{_figure('junction')}"
 
 
 def fit(tables: Tables) -> str:
     calls = {row["call"]: shown(row["s"]) for row in _table(tables, "5,000")}
-    rows = _table(tables, "200 scenes")
+    title, rows = next(iter(tables.items()))
     columns = ("kind", "to 1e-8", "converged elsewhere", "1 % noise: in 95 %", "of converged",
                "converged", "ms")  # fmt: skip
     sentence = f"{calls['next']} s, the first time {calls['first']} s"
-    return f"{_columns(rows, columns)}\n\n5,000 samples with five parameters: {sentence}."
+    return (
+        f"{title}:\n\n{_columns(rows, columns)}\n\n5,000 samples with five parameters: {sentence}."
+    )
 
 
 def stability(tables: Tables) -> str:
@@ -184,10 +191,12 @@ def stability(tables: Tables) -> str:
     columns = ("scene", "by", "error", "of derivatives", "steps", "verdict",
                "SciPy, ellipj", "SciPy, solver", "diffrax")  # fmt: skip
     limits = title.partition("; ")[2]
-    return f"{_columns(rows, columns)}\n\n{limits}.\n\n{report.losses(tables)}"
+    lines = _columns(rows, columns)
+    return f"{lines}\n\nThese are in float64; {limits}.\n\n{report.losses(tables)}"
 
 
 def lean(tables: Tables) -> str:
+    """Those that were counted on paper; the others have no such row."""
     rows = [row for row in _table(tables, "operations") if row["on paper"] is not None]
     columns = ("scene", "asked", "gradient", "part", "on paper", "distinct", "computed",
                "transcendental", "roots")  # fmt: skip

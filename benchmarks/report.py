@@ -25,7 +25,8 @@ def text() -> str:
         "*lane* is one of the pendulums that are followed side by side, a *bar* what was aimed "
         "at. heyoka runs a thread on each core, XLA (pendax, diffrax, jaxellip, "
         "elliptic-functions) as many as it likes, SciPy, GSL, Boost, mpmath and pyjjasim one. "
-        "Errors without a unit are in eps of the scale; angles in rad.",
+        "Errors of functions are in eps of the scale, of angles in rad, of gradients over "
+        "1 + |gradient|, of energies relative.",
     ]
     for name, about in TOPICS.items():
         if not (results.FOLDER / f"{name}.json").exists():
@@ -68,7 +69,7 @@ def missed(tables: Tables) -> str:
     """In words, and nothing where all are met."""
     rows = [row for row in tables["bars"] if row["verdict"] == "missed"]
     count = sum(row["verdict"] != "skipped" for row in tables["bars"])
-    each = (f"{row['bar']} {results.shown(row['measured'])} ({row['limit']})" for row in rows)
+    each = (f"{row['bar']} {row['measured']:.3g} ({row['limit']})" for row in rows)
     return f"Missed, {len(rows)} of {count} aims: {'; '.join(each)}." if rows else ""
 
 
@@ -76,7 +77,7 @@ def losses(tables: Tables) -> str:
     """Where a peer is ahead, in words, what has one reason together."""
     rows = tables.get("losses", [])
     if not rows:
-        return "No peer was ahead anywhere."
+        return "No peer was ahead in these."
     reasons: dict = {}
     for row in rows:
         reasons.setdefault(row["why"], []).append(_loss(row))
@@ -87,7 +88,8 @@ def losses(tables: Tables) -> str:
 def _loss(row: Row) -> str:
     where, peer = row.get("problem") or row.get("where"), row["peer"]
     if row.get("of") == "error":
-        return f"{where}: {peer} is nearer by a factor of {row['ratio']:.2g}"
+        exact = row["ratio"] == float("inf")
+        return f"{where}: {peer} is " + ("exact" if exact else f"{row['ratio']:.3g} times nearer")
     if row.get("of") == "run time":  # ours over theirs
         return f"{where}: {peer} is faster by a factor of {_range(row)}"
     settings = f"at {row['at']} of {row['settings']} settings"

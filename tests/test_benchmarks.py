@@ -87,7 +87,11 @@ def test_what_differs(capsys):
     error = {"where": "x", "of": "error", "ratio": 2.0, "from": None, "to": None}
     assert results.differ({"losses": [error]}, {"losses": [{**error, "ratio": 2.1}]}) == (1, 0, 0)
     assert results.differ(old, {"a": old["a"]}) == (1, 0, 0)
-    assert "a: x: error 1e-10 → 1e-09, µs 10 → 20" in capsys.readouterr().out
+    said = capsys.readouterr().out
+    assert "DIFFERS: a: x: error 1e-10 → 1e-09, µs 10 → 20" in said
+    assert "ratio: losses: x: ratio 2 → 3 (from 1.8 to 2.2)" in said
+    seconds = {"bar": "compiling, s", "measured": 2.0, "from": 1.8, "to": 2.2}
+    assert results.differ({"b": [seconds]}, {"b": [{**seconds, "measured": 3.0}]}) == (0, 0, 1)
 
 
 def test_losses():
