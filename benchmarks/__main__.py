@@ -34,10 +34,19 @@ def main() -> int:
             done = subprocess.run([sys.executable, "-m", "benchmarks", name, *_flags(options)])
             worst = max(worst, done.returncode)
     if not (options.quick or options.verify or options.seed != results.SEED):
-        from . import readme
-
-        readme.renew()
+        worst = max(worst, _renew())
     return worst
+
+
+def _renew() -> int:
+    from . import readme
+
+    try:
+        readme.renew()
+    except (LookupError, StopIteration) as error:
+        print(f"The README is not renewed: a results file of an older form, without {error}.")
+        return 1
+    return 0
 
 
 def _one(name: str, options: argparse.Namespace) -> int:
