@@ -14,7 +14,7 @@ from .problems import Problem
 from .timing import Timing, side_by_side
 
 EPS = 2.0**-52
-ROUNDS = 3
+ROUNDS, OF_CHEAP = 3, 9
 
 
 def measure(problem: Problem, quick: bool) -> tuple[list[results.Row], ...]:
@@ -38,7 +38,7 @@ def points(problem: str, of: Iterable[Method], truth: Callable, floor: float, si
         return call
 
     often = {key: remembered(key) for key, method in known.items() if not method.slow}
-    spent = side_by_side(often, ROUNDS)
+    spent = side_by_side(often, ROUNDS, OF_CHEAP)
     spent |= {key: _once(remembered(key)) for key in known if key not in often}
     rows, timings = [], []
     for key, method in known.items():

@@ -10,6 +10,10 @@ import numpy as np
 
 _ONCE = 0.5  # spread that is assumed of what was timed once
 _OF_100 = 99  # medians of other runs that a stated spread should hold
+# From run to run ratios of two times move as well: where programs come to lie in memory, what else
+# the machine does.  The standard deviation of their logarithms, of 43 ratios in two whole runs on
+# two shared cores, beyond what rounds tell.
+_FROM_RUN_TO_RUN = 0.15
 
 
 class Timing(NamedTuple):
@@ -35,8 +39,8 @@ class Timing(NamedTuple):
 
         It is that of the rounds where both were timed in turn.
         """
-        if len(self.samples) == len(other.samples) > 1:
-            ratios = np.divide(self.samples, other.samples)
+        if (both := min(len(self.samples), len(other.samples))) > 1:
+            ratios = np.divide(self.samples[:both], other.samples[:both])
             low, high = expected(ratios)
             return {"ratio": float(np.median(ratios)), "from": low, "to": high}
         off = (1 + self.spread) * (1 + other.spread)
@@ -45,42 +49,47 @@ class Timing(NamedTuple):
 
     def in_every_round(self, other: "Timing") -> bool:
         """Whether it was faster in each: else they tie."""
-        if len(self.samples) == len(other.samples) > 1:
-            return bool(np.all(np.less(self.samples, other.samples)))
+        if (both := min(len(self.samples), len(other.samples))) > 1:
+            return bool(np.all(np.less(self.samples[:both], other.samples[:both])))
         return self.over(other)["to"] < 1
 
 
 def expected(values) -> tuple[float, float]:
     """Between which the median of as many other values is to be expected in 99 of 100 runs.
 
-    By Student's t of the logarithms, whose median has the variance π σ²/(2 n); at least from the
-    smallest to the largest of these.  What differs from run to run alone is not in it.
+    By Student's t of the logarithms, whose median has the variance π σ²/(2 n), and what runs
+    differ by; at least from the smallest to the largest of these.
     """
-    from scipy.stats import t
+    from scipy.stats import norm, t
 
-    count, median = len(values), float(np.median(values))
+    count, median, tail = len(values), float(np.median(values)), 0.5 + _OF_100 / 200
     off = 1 + _ONCE
     if count > 1:
-        quantile = t.ppf(0.5 + _OF_100 / 200, count - 1)
-        off = np.exp(quantile * np.std(np.log(values), ddof=1) * np.sqrt(np.pi / count))
+        of_rounds = t.ppf(tail, count - 1) * np.std(np.log(values), ddof=1) * np.sqrt(np.pi / count)
+        off = np.exp(np.hypot(of_rounds, norm.ppf(tail) * _FROM_RUN_TO_RUN))
     return float(min(median / off, *values)), float(max(median * off, *values))
 
 
 _SHORT = 2e-3  # s: what takes less is called again and again, as a loop would, for its mean
+_CHEAP = 50e-3  # s: what takes less may have more rounds
 
 
-def side_by_side(calls: dict[str, Callable], rounds: int) -> dict[str, Timing]:
-    """Timings of each call, one of each in turn, after one to warm up."""
+def side_by_side(calls: dict[str, Callable], rounds: int, of_cheap: int = 0) -> dict[str, Timing]:
+    """Timings of each call, one of each in turn, after one to warm up.
+
+    So many rounds, or `of_cheap` where a call is short and those are more.
+    """
     spent: dict[str, list[float]] = {name: [] for name in calls}
-    times = {}
+    times, most = {}, {}
     for name, call in calls.items():
         _seconds(call, 1)
         once = _seconds(call, 1)
         times[name] = min(200, max(1, math.ceil(_SHORT / once)))
         spent[name] += [once] * (times[name] == 1)
-    while any(len(samples) < rounds for samples in spent.values()):
+        most[name] = max(rounds, of_cheap) if once < _CHEAP else rounds
+    while any(len(samples) < most[name] for name, samples in spent.items()):
         for name, call in calls.items():
-            if len(spent[name]) < rounds:
+            if len(spent[name]) < most[name]:
                 spent[name].append(_seconds(call, times[name]))
     return {name: Timing(tuple(samples)) for name, samples in spent.items()}
 
