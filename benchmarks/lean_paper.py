@@ -49,10 +49,11 @@ and a quotient 4 and 5, R Ic 1.  Its derivatives, by JAX from these, are not cou
 
 One step of Taylor's method of order N: 2 N (N − 1) − 1 for the series of sin θ and cos θ, each
 term m products, m − 1 sums and a division; N products by ε, N − 1 divisions; sine and cosine, ε
-and v in the rate's unit, the rate, 10 in all.  Its size: two terms of θ and v against their
-tolerances, two powers, 23.  θ and v by Horner 5 N.  Time 6.  β adds two operations to each term,
-and 3; a torque 4.  With tangents the size needs two terms of sin θ as well, one of them not needed
-by v, against what is allowed: 2 N + 6.  A tangent, of p: one sum of m + 1 products for each sine,
+and v in the rate's unit, the rate, 10 in all.  Its size: of four terms of θ and v the larger
+against its scale, its logarithm over n, the largest of them 31; the scales 7, an exponential, the
+longest 5.  θ and v by Horner 5 N.  Time 6.  β adds two operations to each term, and 3; a torque 4.
+With tangents the size needs four terms of sin θ as well, one of them not needed by v: 2 N + 8.
+A tangent, of p: one sum of m + 1 products for each sine,
 none of cosines; 5 for each term of the force, with β 9, with τ 3 in all; Horner 4 N; 6 beside.
 """
 
@@ -76,7 +77,7 @@ JUNCTION = {
 # Of the tolerance 8e-15, and of 1e-12.
 ORDER, WITH_TANGENTS, RUBBING = 20, 14, 16
 SETTLING, RUBBING_TO_REST = 18, 12
-_SIZE, _TIME = 23, 6
+_SIZE, _TIME = 31 + 7 + 5, 6
 
 
 def series(order: int, *, beta: bool = False, tau: bool = False) -> int:
@@ -99,7 +100,7 @@ def step(
     order = order or (WITH_TANGENTS if directions else ORDER)
     terms = {"beta": beta, "tau": tau}
     value = series(order, **terms) + _SIZE + beta + 5 * order + _TIME
-    forced = 2 * order + 6 if directions else 0
+    forced = 2 * order + 8 if directions else 0
     return value + forced + directions * tangent(order, **terms)
 
 

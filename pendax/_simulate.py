@@ -225,8 +225,8 @@ def _solved(pendulum, ts, lanes, method):
     # At rest, without forces: a single step.
     rest = dict.fromkeys(lanes, 0.0) | {"epsilon": 1e-30}
     # Their derivatives, 0 · NaN in every argument and every mode.
-    wrong = sum(jnp.where(bad, x, 0) for x in lanes.values())
-    wrong = (wrong * jnp.where(bad, jnp.nan, jnp.zeros_like(wrong))).reshape(-1, 1)
+    wrong = sum(jnp.where(bad, x, 0) for x in lanes.values()).reshape(-1, 1)
+    wrong = (wrong + ts.astype(dtype).reshape(1, -1)) * jnp.where(bad, jnp.nan, 0).reshape(-1, 1)
     lanes = {name: jnp.where(bad, rest[name], x) for name, x in lanes.items()}
     times = jnp.where(jnp.all(jnp.isfinite(ts)), ts, 0).astype(dtype)
 

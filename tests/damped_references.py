@@ -28,9 +28,10 @@ def trajectory(epsilon, beta, tau, theta0, v0, ts, slopes=()):
                 scene = (epsilon, beta, tau)
                 series = _series(*scene, theta, v, [m[0] for m in moved], [m[1] for m in moved],
                                  [m[2:] for m in moved])  # fmt: skip
-                # No longer than perturbations allow, of rates √ε and β, and forced by sin θ.
-                slow = 1.5 / max(float(epsilon) ** 0.5, float(beta))
-                h = min(*(_step(x) for x in series), slow)
+                # The last two terms say nothing where they vanish: from rest at 90° v has every
+                # fourth alone.
+                short = 0.5 / max(float(epsilon) ** 0.5, beta, abs(v), float(abs(tau)) ** 0.5)
+                h = min(*(_step(x) for x in series), float(short))
                 left = target - t
                 last = not flint.arb(h) < left
                 h = left if last else flint.arb(h)

@@ -6,7 +6,7 @@
 import flint
 from damped_references import BITS, ORDER, SMALL, _sum
 
-SHORT = 0.25  # of 1/√ε: a step that no motion turns twice in
+SHORT = 0.25  # of the quickest rate: a step that no motion turns twice in
 
 
 def trajectory(epsilon, beta, tau, dry, theta0, v0, ts):
@@ -42,8 +42,10 @@ def trajectory(epsilon, beta, tau, dry, theta0, v0, ts):
                     t = after
                 else:
                     thetas, vs = _series(epsilon, beta, value - way * dry, slope, theta, v)
-                    h = min(_size(thetas), _size(vs), SHORT / float(epsilon) ** 0.5)
-                    h = min(h, 1 / float(beta)) if beta > 0 else h
+                    # The last two terms say nothing where they vanish.
+                    force = epsilon + abs(value) + abs(slope) + dry
+                    short = SHORT / max(float(force) ** 0.5, float(abs(v)), float(beta))
+                    h = min(_size(thetas), _size(vs), short)
                     left = end - t
                     last = not flint.arb(h) < left
                     h = left if last else flint.arb(h)

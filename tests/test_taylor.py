@@ -1,6 +1,6 @@
 """Constant torque: random scenes, derivatives and overdamped ones against 30 digits."""
 
-from functools import cache
+from functools import cache, partial
 
 import damped_references as references
 import diffrax as dfx
@@ -103,6 +103,64 @@ def test_derivatives_of_fast_rotations(mode, dtype):
         for slope, *row in zip(found, epsilon.tolist(), v0.tolist(), strict=True):
             theta, true = true_slope(row[0], beta or 0.0, tau or 0.0, row[1])
             assert abs(slope - true) < 10 * rtol * (1 + abs(theta)), (beta, tau, row)
+
+
+RIGHT = np.pi / 2
+
+
+@cache
+def released(epsilon, tau, theta0):
+    """θ(4), v(4), and ∂θ/∂ε, from rest."""
+    return references.trajectory(epsilon, 0.0, tau, theta0, 0.0, [4.0], ["epsilon"])[0][:3]
+
+
+def test_releases_from_rest(dtype):
+    """Of whose series three powers of four vanish, or nearly: their steps are no longer for it."""
+    epsilon = [9.81, 1.0, 1.0, 2.0**-10, 2.0**-10, 2.0**-50]
+    tau = [0.0, 0.0, 1.5, 0.0, 1.0, 4.0]
+    theta0 = [0.0, RIGHT, RIGHT + 1e-9, RIGHT + 1e-4, 3 * RIGHT]
+    scenes = [(e, t, x) for e, t in zip(epsilon, tau, strict=True) for x in theta0]
+    scenes = np.array(scenes, dtype)
+    true = np.array([released(*scene) for scene in scenes.astype(float).tolist()])
+    scale = 1 + np.abs(true[:, :2]).max(1)
+    tolerances = (8e-15, 1e-6, 1e-7, 1e-9, 1e-12) if dtype == np.float64 else (6e-7, 1e-5)
+    for rtol in tolerances:
+
+        def last(epsilon, tau, theta0, rtol=rtol):
+            run = simulate(Pendulum(epsilon, None, tau), 4.0, 0.0, theta0, rtol=rtol)
+            return run.theta, run.v
+
+        states = np.stack(jax.jit(jax.vmap(last))(*scenes.T), 1)
+        slopes = jax.jit(jax.vmap(jax.grad(lambda *x, f=last: f(*x)[0])))(*scenes.T)
+        error = np.abs(states - true[:, :2]).max(1) / scale
+        assert error.max() < 100 * rtol, scenes[error.argmax()]
+        error = np.abs(slopes - true[:, 2]) / (scale + np.abs(true[:, 2]))
+        assert error.max() < 100 * rtol, scenes[error.argmax()]
+
+
+@pytest.mark.parametrize("mode", [jax.jacfwd, jax.grad])
+@pytest.mark.parametrize("solver", [None, dfx.Tsit5()])
+def test_a_lane_that_fails_has_no_derivatives(solver, mode):
+    def last(beta, most, t=10.0):
+        run = simulate(Pendulum(1.0, beta), t, 1.0, solver=solver, max_steps=most, throw=False)
+        return run.theta
+
+    assert np.isnan(last(0.1, 5))
+    assert np.isnan(mode(partial(last, most=5))(0.1))
+    by_time = jax.jit(lambda beta, t: mode(partial(last, beta, 500))(t))
+    assert np.isnan(by_time(-0.1, 10.0))
+
+
+def test_backwards_steps_are_as_many_as_it_needs():
+    """Where damping makes v grow like e^(β|t|)."""
+    beta, t = jnp.array([1.0, 2.0, 0.5]), jnp.array([-10.0, -5.0, -20.0])
+
+    def last(beta, t, most):
+        return simulate(Pendulum(1.0, beta), t, 1.0, max_steps=most, throw=False).theta
+
+    given, enough = (jax.vmap(partial(last, most=most))(beta, t) for most in (None, 10_000))
+    assert np.isfinite(enough).all()
+    np.testing.assert_array_equal(given, enough)
 
 
 def test_memory_of_a_gradient_does_not_grow_with_the_steps():

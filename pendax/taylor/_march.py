@@ -55,7 +55,8 @@ def marched(
     # With the parameters, as all that is traced must be, and so a floating number.
     extra = max_steps.astype(ts.dtype), t0
     states, (reached, end) = with_derivatives(solve, scene, start, ts, extra, moving_times)
-    return State(*(jnp.where(reached, x, jnp.nan) for x in states)), end
+    # A factor, that derivatives are NaN as well.
+    return State(*(x * jnp.where(reached, 1, jnp.nan) for x in states)), end
 
 
 def with_derivatives(
@@ -187,7 +188,10 @@ _COUNTABLE = 2**31 - 128  # in int32, and a float32
 
 
 def budget(scene: Scene, start: State, ts) -> Int[Array, "*lanes"]:
-    """Many times the steps that the scene can need: a bound on its rates times the span."""
+    """Many times the steps that the scene can need: a bound on its rates times the span.
+
+    `ts` count from when `start` holds.  Backwards, damping makes v grow like e^(β|t|).
+    """
     span = jnp.max(jnp.abs(ts))
     fastest = jnp.abs(start.v) + 2 * jnp.sqrt(scene.epsilon)
     beta = 0.0 if scene.beta is None else scene.beta
@@ -198,6 +202,9 @@ def budget(scene: Scene, start: State, ts) -> Int[Array, "*lanes"]:
         fastest = fastest + largest(scene.tau) * longest
     if isinstance(scene.tau, SampledTorque):
         most = most + 2 * scene.tau.ts.size
+    grown = beta * jnp.max(-ts)
+    grows = grown > 0
+    fastest = fastest * jnp.where(grows, jnp.expm1(grown) / jnp.where(grows, grown, 1), 1)
     rate = jnp.sqrt(scene.epsilon) + fastest + beta
     most = most + 20 * span * rate
     return jnp.minimum(most, _COUNTABLE).astype(jnp.int32)

@@ -13,7 +13,7 @@ from jaxtyping import Array, Bool, Float
 
 from ..special._cpu import stage
 from ._series import Scene, State, scaled_series
-from ._step import integrated, polynomial
+from ._step import LAST, integrated, polynomial, reach
 
 Scalar = Float[Array, ""]
 
@@ -33,11 +33,11 @@ def passage(scene: Scene, energy: Scalar, start: State) -> Passage:
     """From `start`, 0 ≤ θ < 2π and v ≥ 0, of that energy, to θ = 2π, or to θ = 0 with v < 0."""
     # Relative to the amplitude, for the smallest of swings.
     amplitude = jnp.minimum(1.0, jnp.sqrt(energy / scene.epsilon))
-    tolerance = _TOLERANCE * lax.stop_gradient(amplitude)
+    amplitude = lax.stop_gradient(amplitude)
 
     def step(carry):
         t, state, action, _ = carry
-        h = stage(_size, *lax.stop_gradient((scene, state, tolerance)))
+        h = stage(_size, *lax.stop_gradient((scene, state, amplitude)))
         after, gained = _after(scene, state, h)
         ends = (after.theta >= 2 * jnp.pi) | ((after.theta <= 0) & (after.v < 0))
         # Without a way out a number that is not finite would go on for ever.
@@ -66,9 +66,9 @@ def _fraction(theta: Scalar, after: Scalar) -> Scalar:
     return (jnp.where(theta > jnp.pi, 2 * jnp.pi, 0.0) - theta) / (after - theta)
 
 
-def _size(scene: Scene, state: State, tolerance: Scalar) -> Scalar:
+def _size(scene: Scene, state: State, amplitude: Scalar) -> Scalar:
     rate, v, _ = scaled_series(_ORDER, scene, state)
-    return (jnp.maximum(jnp.abs(v[-2]), jnp.abs(v[-1])) / tolerance) ** (-1 / _ORDER) / rate
+    return reach([jnp.abs(x) / amplitude for x in v[-LAST:]], _ORDER, _TOLERANCE) / rate
 
 
 def _after(scene: Scene, state: State, h: Scalar) -> tuple[State, Scalar]:
