@@ -83,11 +83,11 @@ def test_against_steps():
     """Where both can: the same scenes with other ε and a start of every kind."""
     epsilon, beta = 4.0, 4e-4
     ts = np.array([0.5, 900.0, 6000.0, 6000.0])
-    v0 = np.array([3.0, 0.0, -6.0, 0.0, 1e-3, 4.0])
-    theta0 = np.array([1.0, 3.1, 20.0, 0.0, 0.0, 0.0])
+    v0 = np.array([3.0, 0.0, -6.0, 0.0, 1e-3, 4.0, 0.0])
+    theta0 = np.array([1.0, 3.1, 20.0, 0.0, 0.0, 0.0, np.pi / 2])
     steps = simulate(Pendulum(epsilon, beta, 0.0), ts, v0, theta0, rtol=1e-15)
     assert steps.method == "Taylor series"
-    for i in range(6):
+    for i in range(len(v0)):
         theta, v, stated = averaged(epsilon, beta, ts, v0[i], theta0[i])
         error = np.hypot(theta - steps.theta[i], (v - steps.v[i]) / 2).max()
         assert error <= min(stated + 1e-9, 1e-6)

@@ -63,6 +63,25 @@ def test_motion(scene):
     assert len(turns) > 3 or abs(true[-1, 0]) > 20
 
 
+RISING = [(0.0, 0.0), (2.0, 2.0), (4.0, 4.0), (6.0, 1.0)]
+FALLING = [(t, 2.0 - x) for t, x in RISING]
+
+
+@pytest.mark.parametrize("rtol", [None, 1e-6, 1e-9])
+@pytest.mark.parametrize("theta0", [0.0, np.pi / 2, np.pi / 2 + 1e-9])
+def test_releases_from_rest(theta0, rtol):
+    """Of whose series three powers of four vanish, five of six where the torque is a ramp."""
+    scenes = [(9.81, 0.0, 0.05), (2.0**-10, 1.0, 0.125), (2.0, RISING, 0.1), (2.0, FALLING, 0.0),
+              (2.0**-10, RISING, 0.0), (2.0**-30, RISING, 0.125)]  # fmt: skip
+    ts = np.array([1.5, 5.0])
+    for epsilon, tau, dry in scenes:
+        torque = SampledTorque(*np.transpose(tau)) if isinstance(tau, list) else tau
+        run = simulate(Pendulum(epsilon, None, torque, dry), ts, 0.0, theta0, rtol=rtol)
+        rows = references.trajectory(epsilon, 0.0, tau, dry, theta0, 0.0, ts.tolist())[0]
+        error = np.abs(np.stack([run.theta, run.v], 1) - floats(rows)).max()
+        assert error < 100 * (rtol or 8e-15) * (1 + np.abs(floats(rows)).max()), (epsilon, tau)
+
+
 @cache
 def long_swing(ts):
     """Angles, the number of turning points, and κ."""
