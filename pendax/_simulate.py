@@ -94,14 +94,17 @@ def simulate(
     **Returns:** a [`Trajectory`][], libration, rotation and the separatrix alike.  In the
     closed form there is no solver in the compiled program, and no kink anywhere: θ and v
     are analytic functions of all arguments, and so are their derivatives of every order.
-    Saved times of a solver are ends of its steps; those that it did not reach are NaN.
+    Saved times of a solver are ends of its steps; those that it did not reach are NaN.  So
+    are derivatives of what is NaN, and, in reverse mode, of a sum over other lanes by what they
+    share with it, even where it is masked: put another start in its place instead.
 
     **Raises:** `ValueError` for a solver's options where the closed form answers, and for
     times that are not monotone where it does not; `RuntimeError` where a solver fails: too many
     steps, steps held small by the damping, a number that is not finite.  NaN, infinities, and
     under a transformation ε ≤ 0, β < 0 and c < 0, give NaN in their own lane, and its `result` says
     so.  Traced times can't be checked to be monotone: by Taylor's method they are followed in
-    the order given, by diffrax they must be.
+    the order given; diffrax checks several of them by a callback, which keeps the program out of
+    JAX's persistent cache but for `EQX_ON_ERROR=nan` in the environment: NaN instead of an error.
 
     **Accuracy** of the closed form: 16 eps of |f| + Σ |x ∂f/∂x| over ε, t, v0, θ0 for f = θ
     and of that + |t ε sin θ| for v, for |v0| up to 1e8, |θ0| to 1e3, 1e6 periods, ε from
@@ -225,7 +228,7 @@ def _solved(pendulum, ts, lanes, method):
     # At rest, without forces: a single step.
     rest = dict.fromkeys(lanes, 0.0) | {"epsilon": 1e-30}
     # Their derivatives, 0 · NaN in every argument and every mode.
-    wrong = sum(jnp.where(bad, x, 0) for x in lanes.values()).reshape(-1, 1)
+    wrong = jnp.reshape(sum(jnp.where(bad, x, 0) for x in lanes.values()), (-1, 1))
     wrong = (wrong + ts.astype(dtype).reshape(1, -1)) * jnp.where(bad, jnp.nan, 0).reshape(-1, 1)
     lanes = {name: jnp.where(bad, rest[name], x) for name, x in lanes.items()}
     times = jnp.where(jnp.all(jnp.isfinite(ts)), ts, 0).astype(dtype)
