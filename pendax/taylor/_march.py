@@ -79,9 +79,11 @@ def with_derivatives(
 
 def _moved(scene: Scene, state: State, t: Scalar) -> State:
     """The state at t, with its derivatives in t."""
-    late = t - lax.stop_gradient(t)
+    at = lax.stop_gradient(t)
+    late = t - at
     if is_switched(scene):
-        scene, moving = momentary(scene, t, state)
+        # The line through τ there; along it the time moves by `late` alone, or it counts twice.
+        scene, moving = momentary(scene, at, state)
         late = moving * late
     return _later(scene, state, late)
 
