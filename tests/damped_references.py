@@ -1,6 +1,7 @@
 """θ̈ + β θ̇ + ε sin θ = τ to 30 digits: Taylor series of order 40 in Arb, with derivatives."""
 
 import math
+from operator import mul
 
 import flint
 
@@ -54,15 +55,20 @@ def _series(epsilon, beta, tau, theta, v, dthetas, dvs, rates):
         vs.append(force / (n + 1))
         thetas.append(vs[n] / (n + 1))
         for (dtheta, dv), (of_epsilon, of_beta, of_tau) in zip(moved, rates, strict=True):
-            bent = sum((cosines[k] * dtheta[n - k] for k in range(n + 1)), flint.arb(0))
+            bent = folded(dtheta, cosines)
             change = -epsilon * bent - beta * dv[n] - of_epsilon * sines[n] - of_beta * vs[n]
             dv.append((change + (of_tau if n == 0 else 0)) / (n + 1))
             dtheta.append(dv[n] / (n + 1))
-        sine = sum((vs[k] * cosines[n - k] for k in range(n + 1)), flint.arb(0))
-        cosine = sum((vs[k] * sines[n - k] for k in range(n + 1)), flint.arb(0))
+        sine = folded(vs, cosines)
+        cosine = folded(vs, sines)
         sines.append(sine / (n + 1))
         cosines.append(-cosine / (n + 1))
     return [thetas, vs, *(x for pair in moved for x in pair)]
+
+
+def folded(a, b):
+    """The last coefficient of b's of the product of the two, of which `a` may be the longer."""
+    return sum(map(mul, a, reversed(b)), flint.arb(0))
 
 
 def _step(coefficients) -> float:

@@ -4,7 +4,7 @@
 """
 
 import flint
-from damped_references import BITS, ORDER, SMALL, _sum
+from damped_references import BITS, ORDER, SMALL, _sum, folded
 
 SHORT = 0.25  # of the quickest rate: a step that no motion turns twice in
 
@@ -82,8 +82,8 @@ def _series(epsilon, beta, tau, slope, theta, v):
         push = tau if n == 0 else slope if n == 1 else zero
         vs.append((push - epsilon * sines[n] - beta * vs[n]) / (n + 1))
         thetas.append(vs[n] / (n + 1))
-        sine = sum((vs[k] * cosines[n - k] for k in range(n + 1)), zero)
-        cosine = sum((vs[k] * sines[n - k] for k in range(n + 1)), zero)
+        sine = folded(vs, cosines)
+        cosine = folded(vs, sines)
         sines.append(sine / (n + 1))
         cosines.append(-cosine / (n + 1))
     return thetas, vs

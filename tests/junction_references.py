@@ -32,8 +32,8 @@ def phase(i0, i1, omega, phi, s_end, beta=None, v=0.0):
                 else:
                     vs.append((current[n] - sines[n] - arb(beta) * vs[n]) / (n + 1))
                 phis.append(vs[n] / (n + 1))
-                sine = sum((vs[k] * cosines[n - k] for k in range(n + 1)), arb(0))
-                cosine = -sum((vs[k] * sines[n - k] for k in range(n + 1)), arb(0))
+                sine = steps.folded(vs, cosines)
+                cosine = -steps.folded(vs, sines)
                 sines.append(sine / (n + 1))
                 cosines.append(cosine / (n + 1))
             h = min(steps._step(phis), steps._step(current), 1.5 / max(1, beta or 0))
