@@ -75,6 +75,8 @@ def _one(name: str, options: argparse.Namespace) -> int:
     missed = results.missed(tables)
     print(f"\n{name}: {time.perf_counter() - started:.0f} s; missed: {'; '.join(missed) or 'none'}")
     if options.verify:
+        for line in results.moved(kept):
+            print(f"not the machine and versions of what is kept: {line}")
         wrong, ratios, slow = results.differ(kept["tables"], tables)
         print(
             f"{name}: {'FAILED' if wrong + ratios else 'verified'}; errors differ in {wrong} rows, "

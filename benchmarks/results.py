@@ -11,6 +11,7 @@ SEED = 1  # of what is kept
 _PACKAGES = ("pendax", "jax", "jaxlib", "diffrax", "equinox", "numpy", "scipy", "heyoka")
 _TIMES = ("ns", "µs", "ms", "s")  # columns of medians; "spread" beside them is relative
 _SPREADS = ("spread", "from", "to", "at")  # "at" so many settings a peer is faster
+_GENERATION = {"family": "cpu family", "model": "model"}  # as /proc/cpuinfo has them on x86
 _ASSUMED = 0.5  # spread of a time that has none beside it
 Row = dict[str, str | float | int | bool | None]
 Tables = dict[str, list[Row]]
@@ -57,13 +58,25 @@ def folder(quick: bool = False) -> Path:
 
 def write(name: str, tables: Tables, *, seed: int, quick: bool) -> Path:
     """`tables` into NAME.json, beside the machine, the versions and the settings."""
-    import jax
-
     from .peers import ABSENT
 
     folder(quick).mkdir(parents=True, exist_ok=True)
     path = folder(quick) / f"{name}.json"
     content = {
+        **here(),
+        "settings": {"seed": seed, "quick": quick},
+        "absent": sorted(ABSENT),
+        "tables": tables,
+    }
+    path.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
+    return path
+
+
+def here() -> dict[str, dict]:
+    """This machine, and the versions of what is measured on it."""
+    import jax
+
+    return {
         "machine": {
             "device": jax.devices()[0].device_kind,
             "processor": _processor(),
@@ -71,12 +84,17 @@ def write(name: str, tables: Tables, *, seed: int, quick: bool) -> Path:
             "python": platform.python_version(),
         },
         "versions": {package: _version(package) for package in _PACKAGES},
-        "settings": {"seed": seed, "quick": quick},
-        "absent": sorted(ABSENT),
-        "tables": tables,
     }
-    path.write_text(json.dumps(content, indent=1, ensure_ascii=False) + "\n", encoding="utf-8")
-    return path
+
+
+def moved(kept: dict) -> list[str]:
+    """In what this machine and its versions are others than those of `kept`, a line each."""
+    return [
+        f"{key}: {kept[part].get(key)} → {now}"
+        for part, values in here().items()
+        for key, now in values.items()
+        if now != kept[part].get(key)
+    ]
 
 
 def read(name: str, folder: Path = FOLDER) -> dict:
@@ -176,9 +194,12 @@ def _version(package: str) -> str | None:
 
 
 def _processor() -> str:
+    """With family and model: the name alone may be that of several generations."""
     info = Path("/proc/cpuinfo")
-    if info.exists():
-        for line in info.read_text(encoding="utf-8").splitlines():
-            if line.startswith("model name"):
-                return line.split(":", 1)[1].strip()
-    return platform.processor() or platform.machine()
+    if not info.exists():
+        return platform.processor() or platform.machine()
+    first = info.read_text(encoding="utf-8").split("\n\n")[0]
+    says = {k.strip(): v.strip() for k, _, v in (x.partition(":") for x in first.splitlines())}
+    name = says.get("model name") or platform.machine()
+    exact = [f"{key} {says[of]}" for key, of in _GENERATION.items() if of in says]
+    return f"{name} ({', '.join(exact)})" if exact else name

@@ -100,6 +100,16 @@ def test_what_differs(capsys):
     assert results.differ({"b": [seconds]}, {"b": [{**seconds, "measured": 3.0}]}) == (0, 0, 1)
 
 
+def test_another_machine_is_named():
+    here = results.here()
+    assert results.moved(here) == []
+    machine, versions = here["machine"], here["versions"]
+    there = {"machine": {**machine, "processor": "abacus"}, "versions": {**versions, "jax": "0"}}
+    assert results.moved(there) == [
+        f"processor: abacus → {machine['processor']}", f"jax: 0 → {versions['jax']}"
+    ]  # fmt: skip
+
+
 def test_losses():
     """Of each peer the smallest error that we don't reach, and where it is fastest; float32 does
     not count as ours, and errors below the floor are equal."""
