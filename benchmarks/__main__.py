@@ -57,7 +57,7 @@ def _one(name: str, options: argparse.Namespace) -> int:
     settings = {"seed": options.seed, "quick": options.quick}
     if options.seed != results.SEED:
         results.elsewhere(results.FOLDER / "other" / ("quick" if options.quick else ""))
-    if options.verify and not (kept := _kept(name, settings)):
+    if options.verify and not (kept := results.kept(name, settings)):
         return 2
     started = time.perf_counter()
     print(f"\n# {name}: {TOPICS[name]}", flush=True)
@@ -85,19 +85,6 @@ def _one(name: str, options: argparse.Namespace) -> int:
         return int(wrong + ratios > 0)
     print(f"written: {path}", flush=True)
     return int(options.check and bool(missed))
-
-
-def _kept(name: str, settings: dict) -> dict | None:
-    """The results to compare with, if there are any of these settings."""
-    path = results.folder(settings["quick"]) / f"{name}.json"
-    if not path.exists():
-        print(f"{name}: nothing to compare with, there is no {path}")
-    elif (known := results.read(name, path.parent))["settings"] == settings:
-        return known
-    else:
-        of = known["settings"]["seed"]
-        print(f"{name}: {path} is of seed {of}, not {settings['seed']}: measure that first")
-    return None
 
 
 def _flags(options: argparse.Namespace) -> list[str]:

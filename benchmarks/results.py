@@ -87,19 +87,36 @@ def here() -> dict[str, dict]:
     }
 
 
-def moved(kept: dict) -> list[str]:
-    """In what this machine and its versions are others than those of `kept`, a line each."""
+def moved(old: dict) -> list[str]:
+    """In what this machine and its versions are others than those of `old`, a line each."""
     return [
-        f"{key}: {kept[part].get(key)} → {now}"
+        f"{key}: {was} → {now}"
         for part, values in here().items()
         for key, now in values.items()
-        if now != kept[part].get(key)
+        if now != (was := old.get(part, {}).get(key))
     ]
 
 
 def read(name: str, folder: Path = FOLDER) -> dict:
     """What `write` wrote."""
     return json.loads((folder / f"{name}.json").read_text(encoding="utf-8"))
+
+
+def kept(name: str, settings: dict) -> dict | None:
+    """What there is to compare with; where there is nothing of these settings, prints why."""
+    path = folder(settings["quick"]) / f"{name}.json"
+    try:
+        known = read(name, path.parent)
+        of, _ = known["settings"], known["tables"]
+    except FileNotFoundError:
+        print(f"{name}: nothing to compare with, there is no {path}")
+    except (ValueError, LookupError, TypeError) as error:
+        print(f"{name}: nothing to compare with, {path} is damaged ({error!r})")
+    else:
+        if of == settings:
+            return known
+        print(f"{name}: {path} is of {of}, not {settings}: measure that first")
+    return None
 
 
 def differ(old: Tables, new: Tables) -> tuple[int, int, int]:

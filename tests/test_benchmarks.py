@@ -108,6 +108,26 @@ def test_another_machine_is_named():
     assert results.moved(there) == [
         f"processor: abacus → {machine['processor']}", f"jax: 0 → {versions['jax']}"
     ]  # fmt: skip
+    assert len(results.moved({})) == len(machine) + sum(x is not None for x in versions.values())
+
+
+@pytest.mark.parametrize(
+    ("content", "said"),
+    [
+        (None, "there is no"),
+        ('{"settings": {"seed"', "is damaged (JSONDecodeError"),
+        ("[1]", "is damaged (TypeError"),
+        ('{"settings": {"seed": 1}}', "is damaged (KeyError('tables')"),
+        ('{"settings": {"seed": 2}, "tables": {}}', "is of {'seed': 2}, not {'seed': 1"),
+    ],
+)
+def test_nothing_to_compare_with(content, said, tmp_path, monkeypatch, capsys):
+    """It is said before anything is measured."""
+    monkeypatch.setattr(results, "FOLDER", tmp_path)
+    if content is not None:
+        (tmp_path / "dry.json").write_text(content)
+    assert results.kept("dry", {"seed": 1, "quick": False}) is None
+    assert said in capsys.readouterr().out
 
 
 def test_losses():
