@@ -142,7 +142,7 @@ def differ(old: Tables, new: Tables) -> tuple[int, int, int]:
                 of_range = of_range and not _in_seconds(was)
                 wrong, ratios = wrong + (not timed), ratios + of_range
                 slow += timed and not of_range
-                changes = (f"{key} {_exact(was.get(key))} → {_exact(now.get(key))}" for key in off)
+                changes = (f"{key} {_change(was.get(key), now.get(key))}" for key in off)
                 word = "ratio" if of_range else "time" if timed else "DIFFERS"
                 range_ = f" (from {was['from']:.3g} to {was['to']:.3g})" if of_range else ""
                 print(f"{word}: {title}: {_name(was)}: {', '.join(changes)}{range_}")
@@ -158,8 +158,10 @@ def _in_seconds(row: Row) -> bool:
     return str(row.get("bar", "")).endswith((", s", ": s", "µs more"))
 
 
-def _exact(value) -> str:
-    return f"{value:.6g}" if isinstance(value, float) else str(value)
+def _change(was, now) -> str:
+    """To as many digits as tell the two apart."""
+    short = [f"{x:.6g}" if isinstance(x, float) else str(x) for x in (was, now)]
+    return " → ".join(short if short[0] != short[1] else (str(was), str(now)))
 
 
 def _timed(key: str, row: Row) -> bool:

@@ -95,6 +95,7 @@ def test_what_differs(capsys):
     assert results.differ(old, {"a": old["a"]}) == (1, 0, 0)
     said = capsys.readouterr().out
     assert "DIFFERS: a: x: error 1e-10 → 1e-09, µs 10 → 20" in said
+    assert "error 1e-10 → 1.0000000000000002e-10" in said
     assert "ratio: losses: x: ratio 2 → 3 (from 1.8 to 2.2)" in said
     seconds = {"bar": "compiling, s", "measured": 2.0, "from": 1.8, "to": 2.2}
     assert results.differ({"b": [seconds]}, {"b": [{**seconds, "measured": 3.0}]}) == (0, 0, 1)
