@@ -14,12 +14,15 @@ from ._pendulum import Pendulum
 from ._results import Result
 from ._torque import SampledTorque
 from .taylor import (
+    Analytic,
     Scene,
     State,
+    analytic,
     averaged,
     budget,
     is_overdamped,
     marched,
+    since,
     with_derivatives,
 )
 
@@ -34,7 +37,7 @@ class Method(eqx.Module):
 
 
 class TaylorSeries(Method):
-    """For terms that don't depend on time, or as samples do."""
+    """For terms that don't depend on time, or as samples do, or an entire function."""
 
     rtol: float = eqx.field(static=True)
     atol: float = eqx.field(static=True)
@@ -44,17 +47,21 @@ class TaylorSeries(Method):
     name: str = eqx.field(static=True, default="Taylor series")
 
     def __call__(self, scene: Pendulum, times, v0, theta0, t0) -> Any:
-        terms = Scene(scene.epsilon, scene.beta, scene.tau, scene.dry)
-        start, since = State(theta0, v0), times - t0
-        most = budget(terms, start, since)
+        tau, clock = scene.tau, callable(scene.tau)
+        if callable(tau) and not isinstance(tau, SampledTorque):
+            tau = analytic(tau, times.dtype)
+        terms = Scene(scene.epsilon, scene.beta, tau, scene.dry)
+        start, elapsed = State(theta0, v0), times - t0
+        most = budget(since(terms, t0), start, elapsed)
+        if isinstance(tau, Analytic):
+            most = jnp.minimum(most, 2**24)  # β may have been hidden, and be large
         if self.max_steps is not None:
             most = self.max_steps
         # Where there is no clock, time begins with the motion: differences keep their digits.
-        clock = isinstance(scene.tau, SampledTorque)
         states, end = marched(
             terms,
             start,
-            times if clock else since,
+            times if clock else elapsed,
             most,
             t0=t0 if clock else None,
             rtol=self.rtol,
@@ -64,6 +71,9 @@ class TaylorSeries(Method):
         )
         arrived = jnp.all(jnp.isfinite(states.theta) & jnp.isfinite(states.v))
         failed = Result.where(end.going, Result.too_many_steps, Result.solver_failed)
+        if isinstance(tau, Analytic) and scene.beta is not None:
+            stiff = end.going & _hopeless(scene.beta, elapsed, most.astype(elapsed.dtype))
+            failed = Result.where(stiff, Result.too_stiff, failed)
         result = Result.where(arrived, Result.successful, failed)
         none = jnp.zeros_like(end.steps)
         stats = {"steps": end.steps, "accepted": end.steps, "rejected": none}
@@ -107,11 +117,15 @@ class Diffrax(Method):
             scene, times, v0, theta0, t0, solver=self.solver, **self.options
         )
         if scene.beta is not None and not isinstance(self.solver, AbstractImplicitSolver):
-            # No explicit step is stable that is many times 1/β.
-            hopeless = scene.beta * jnp.max(jnp.abs(times - t0)) > 4 * self.options["max_steps"]
+            hopeless = _hopeless(scene.beta, times - t0, self.options["max_steps"])
             stiff = hopeless & (result == Result.too_many_steps)
             result = Result.where(stiff, Result.too_stiff, result)
         return *motion, result, stats
+
+
+def _hopeless(beta, elapsed, max_steps) -> Any:
+    """No explicit step is stable that is many times 1/β."""
+    return beta * jnp.max(jnp.abs(elapsed)) > 4 * max_steps
 
 
 def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str, Any]) -> Method:
@@ -125,7 +139,7 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
     _require_switching(pendulum, plain, span)
     backwards = span is not None and bool(np.any(span < 0))
     sampled = isinstance(pendulum.tau, SampledTorque) and not backwards
-    if (not callable(pendulum.tau) or sampled) and plain:
+    if plain and (not callable(pendulum.tau) or sampled or _is_entire(pendulum, dtype)):
         # Who speaks of steps wants them.
         free = all(options[x] is None for x in ("rtol", "atol", "max_steps"))
         if free and span is not None and _barely_damped(pendulum, span, dtype):
@@ -138,7 +152,7 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
             atol=options["atol"] or rtol,
             max_steps=None if most is None else jnp.asarray(min(most, 2**31 - 128), jnp.int32),
             # A line's end would start another relaxation.
-            stiff=not sampled and _overdamped(pendulum) is not False,
+            stiff=not callable(pendulum.tau) and _overdamped(pendulum) is not False,
             moving_times=span is None,
         )
     import diffrax as dfx
@@ -204,6 +218,13 @@ def _barely_damped(pendulum: Pendulum, span, dtype) -> bool:
     root, beta = _together(np.sqrt(np.asarray(epsilon)), beta)
     weak = np.all((beta > 0) & (beta <= 3e-4 * root) | np.isnan(beta))
     return bool(weak and np.all(span > 0) and np.max(span) * np.min(root) > 1e4)
+
+
+def _is_entire(pendulum: Pendulum, dtype) -> bool:
+    """Whether τ is a function that shows what it is, and no lane needs an implicit step."""
+    if not callable(pendulum.tau) or isinstance(pendulum.tau, SampledTorque):
+        return False
+    return not _overdamped(pendulum) and analytic(pendulum.tau, dtype) is not None
 
 
 def _overdamped(pendulum: Pendulum) -> bool | None:

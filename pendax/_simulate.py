@@ -1,4 +1,4 @@
-"""One door to a trajectory: the closed form where there is one, diffrax elsewhere."""
+"""One door to a trajectory: the closed form where there is one, a method for the rest."""
 
 from functools import partial
 from typing import Any
@@ -62,7 +62,10 @@ def simulate(
     - No torque, no dry friction, 0 < β ≤ 3e-4 √ε in all lanes and more than 10⁴/√ε to follow, in
       float64 and with neither `rtol`, `atol` nor `max_steps`: averaging over turns, some 0.2 s
       however long.
-    - τ another function of t: diffrax's `Dopri8`, or its `Kvaerno5` where β is as large as above.
+    - τ a function of t made by sums and products, to the third power of t, of sin, cos and exp of
+      what is linear in t: Taylor's method as well, unless β is as large as above.  `simulate` reads
+      that off the function.
+    - τ another function of t, or with such a β: diffrax's `Dopri8`, or its `Kvaerno5`.
 
     Under a transformation β may be hidden: the program then has both of the second line's, and
     never the third's.

@@ -13,25 +13,35 @@ def trajectory(epsilon, beta, tau, theta0, v0, ts, slopes=()):
 
     With `slopes`, names out of "epsilon", "beta", "tau", "theta0", "v0", each row goes on with
     (∂θ, ∂v) by each of them.
+
+    τ may be a function of `flint.arb_series`, whose changes within 1/4 s are seen; a slope is then
+    another, how it changes with a parameter of its own.
     """
     with flint.ctx.workprec(BITS):
-        epsilon, beta, tau, theta, v = map(flint.arb, (epsilon, beta, tau, theta0, v0))
+        epsilon, beta, theta, v = map(flint.arb, (epsilon, beta, theta0, v0))
+        wave = tau if callable(tau) else lambda t: flint.arb_series([tau])
+        bends = [
+            x if callable(x) else lambda t, x=x: flint.arb_series([x == "tau"]) for x in slopes
+        ]
         zero, one = flint.arb(0), flint.arb(1)
-        # Per direction: θ's and v's changes, and those of ε, β, τ.
+        # Per direction: θ's and v's changes, and those of ε, β; later those of τ's series.
         moved = [
-            [one if name == x else zero for x in ("theta0", "v0", "epsilon", "beta", "tau")]
+            [one if name == x else zero for x in ("theta0", "v0", "epsilon", "beta")]
             for name in slopes
         ]
         t, rows = zero, []
         for target in ts:
             target = flint.arb(target)
             while t < target:
-                scene = (epsilon, beta, tau)
+                push = _torque(wave, t)
+                rates = [(*m[2:], _torque(x, t)) for m, x in zip(moved, bends, strict=True)]
+                scene = (epsilon, beta, push)
                 series = _series(*scene, theta, v, [m[0] for m in moved], [m[1] for m in moved],
-                                 [m[2:] for m in moved])  # fmt: skip
+                                 rates)  # fmt: skip
                 # The last two terms say nothing where they vanish: from rest at 90° v has every
                 # fourth alone.
-                short = 0.5 / max(float(epsilon) ** 0.5, beta, abs(v), float(abs(tau)) ** 0.5)
+                fast = max(float(epsilon) ** 0.5, beta, abs(v), float(abs(push[0])) ** 0.5)
+                short = 0.5 / (max(fast, 2) if callable(tau) else fast)
                 h = min(*(_step(x) for x in series), float(short))
                 left = target - t
                 last = not flint.arb(h) < left
@@ -45,19 +55,25 @@ def trajectory(epsilon, beta, tau, theta0, v0, ts, slopes=()):
     return rows
 
 
+def _torque(wave, t):
+    flint.ctx.cap = ORDER + 1
+    series = wave(flint.arb_series([t, 1]))
+    return [series[n] for n in range(ORDER + 1)]
+
+
 def _series(epsilon, beta, tau, theta, v, dthetas, dvs, rates):
     """Coefficients of θ, v and of every direction's two."""
     thetas, vs = [theta], [v]
     sines, cosines = [theta.sin()], [theta.cos()]
     moved = [([a], [b]) for a, b in zip(dthetas, dvs, strict=True)]
     for n in range(ORDER):
-        force = -epsilon * sines[n] - beta * vs[n] + (tau if n == 0 else 0)
+        force = -epsilon * sines[n] - beta * vs[n] + tau[n]
         vs.append(force / (n + 1))
         thetas.append(vs[n] / (n + 1))
         for (dtheta, dv), (of_epsilon, of_beta, of_tau) in zip(moved, rates, strict=True):
             bent = folded(dtheta, cosines)
             change = -epsilon * bent - beta * dv[n] - of_epsilon * sines[n] - of_beta * vs[n]
-            dv.append((change + (of_tau if n == 0 else 0)) / (n + 1))
+            dv.append((change + of_tau[n]) / (n + 1))
             dtheta.append(dv[n] / (n + 1))
         sine = folded(vs, cosines)
         cosine = folded(vs, sines)

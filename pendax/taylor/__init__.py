@@ -3,6 +3,8 @@
 τ may be a sine or samples that straight lines join; dry friction is a torque that is switched.
 """
 
+from ._analytic import Analytic as Analytic
+from ._analytic import analytic as analytic
 from ._averaged import averaged as averaged
 from ._columns import by_columns as by_columns
 from ._columns import no_tangent as no_tangent
@@ -16,6 +18,7 @@ from ._overdamped import strength as strength
 from ._series import Scene as Scene
 from ._series import Sine as Sine
 from ._series import State as State
+from ._series import since as since
 from ._step import Method as Method
 from ._step import order_for as order_for
 from ._step import polynomial as polynomial

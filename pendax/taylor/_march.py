@@ -11,9 +11,10 @@ from jaxtyping import Array, Bool, Float, Int
 
 from .._torque import SampledTorque
 from . import _switched as switched
+from ._analytic import Analytic
 from ._columns import by_columns
 from ._overdamped import is_overdamped, overdamped
-from ._series import Scene, State, largest
+from ._series import Scene, State, largest, since
 from ._step import STABLE, Method, for_tangents, order_for, taylor
 from ._switched import Stretch, is_switched, momentary
 
@@ -85,7 +86,7 @@ def _moved(scene: Scene, state: State, t: Scalar) -> State:
         # The line through τ there; along it the time moves by `late` alone, or it counts twice.
         scene, moving = momentary(scene, at, state)
         late = moving * late
-    return _later(scene, state, late)
+    return _later(since(scene, at), state, late)
 
 
 @jax.custom_jvp
@@ -174,12 +175,13 @@ def until(
         return (at.t != target) & at.going & (at.steps < max_steps)
 
     def step(at: March):
-        known = method.series(scene, at.state)
-        h = direction * method.size(scene, at.state, known)
+        now = since(scene, at.t)
+        known = method.series(now, at.state)
+        h = direction * method.size(now, at.state, known)
         last = ~(jnp.abs(h) < jnp.abs(target - at.t))
         after = jnp.where(last, target, at.t + h)
         # The step that is made is the difference of the times as they are rounded.
-        state = method.step(scene, at.state, after - at.t, known)
+        state = method.step(now, at.state, after - at.t, known)
         fine = jnp.isfinite(state.theta) & jnp.isfinite(state.v) & (after != at.t)
         return March(after, state, at.steps + 1, fine & ~jnp.isnan(h))
 
@@ -201,7 +203,9 @@ def budget(scene: Scene, start: State, ts) -> Int[Array, "*lanes"]:
     if scene.tau is not None:
         # τ accelerates until the damping, or the end, stops it.
         longest = jnp.minimum(span, 1 / jnp.maximum(beta, 1 / span))
-        fastest = fastest + largest(scene.tau) * longest
+        fastest = fastest + _most(scene.tau, ts) * longest
+    if isinstance(scene.tau, Analytic):
+        fastest = fastest + scene.tau.quickness()
     if isinstance(scene.tau, SampledTorque):
         most = most + 2 * scene.tau.ts.size
     grown = beta * jnp.max(-ts)
@@ -209,4 +213,12 @@ def budget(scene: Scene, start: State, ts) -> Int[Array, "*lanes"]:
     fastest = fastest * jnp.where(grows, jnp.expm1(grown) / jnp.where(grows, grown, 1), 1)
     rate = jnp.sqrt(scene.epsilon) + fastest + beta
     most = most + 20 * span * rate
-    return jnp.minimum(most, _COUNTABLE).astype(jnp.int32)
+    return jnp.fmin(most, _COUNTABLE).astype(jnp.int32)
+
+
+def _most(tau: Any, ts) -> Float[Array, "*lanes"]:
+    """The most that |τ| is; of a function of time, twice what is met in a look at some."""
+    if not isinstance(tau, Analytic):
+        return largest(tau)
+    some = jnp.linspace(0, 1, 33, dtype=ts.dtype) * ts[jnp.argmax(jnp.abs(ts))]
+    return 2 * jnp.max(jnp.abs(jax.vmap(tau)(tau.clock + some)))

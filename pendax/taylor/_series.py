@@ -20,12 +20,13 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from .._torque import SampledTorque
+from ._analytic import Analytic
 
 Scalar = Float[Array, ""]
 
 
 class Scene(NamedTuple):
-    """The parameters, a term that is `None` being absent; τ a number or one of the next two.
+    """The parameters, a term that is `None` being absent; τ a number, `Analytic`, or as below.
 
     Series know nothing of `dry`: see `_switched`, which makes it a part of τ.
     """
@@ -53,7 +54,9 @@ class Ramp(NamedTuple):
 
 
 def largest(tau: Any) -> Any:
-    """The most that |τ| can be, of a ramp now; of numbers a number, to choose a method by."""
+    """The most that |τ| can be, or what it is now; of numbers a number, to choose a method by."""
+    if isinstance(tau, Analytic):
+        return jnp.abs(tau(tau.clock))
     if isinstance(tau, Ramp):
         return abs(tau.value)
     if isinstance(tau, SampledTorque):
@@ -65,6 +68,8 @@ def torque_series(tau: Any, unit: Any, order: int) -> list[Any]:
     """τ_0, τ_1, … of time counted in `unit`, as far as they are not 0."""
     if tau is None:
         return []
+    if isinstance(tau, Analytic):
+        return tau.series(unit, order)
     if isinstance(tau, Ramp):
         return [tau.value, tau.slope * unit]
     if not isinstance(tau, Sine):
@@ -77,6 +82,11 @@ def torque_series(tau: Any, unit: Any, order: int) -> list[Any]:
         growth = growth * (tau.frequency * unit / (n + 1))
     coefficients[0] = tau.mean + coefficients[0]
     return coefficients
+
+
+def since(scene: Scene, clock: Scalar) -> Scene:
+    """The scene whose time begins at `clock`."""
+    return scene._replace(tau=scene.tau.since(clock)) if isinstance(scene.tau, Analytic) else scene
 
 
 class State(NamedTuple):
@@ -94,6 +104,8 @@ def scaled_series(order: int, scene: Scene, state: State):
         rate = jnp.maximum(rate, jnp.sqrt(largest(scene.tau)))
     if isinstance(scene.tau, Sine):
         rate = jnp.maximum(rate, scene.tau.frequency)
+    if isinstance(scene.tau, Analytic):
+        rate = jnp.maximum(rate, scene.tau.quickness())
     rate = _power_of_two_above(lax.stop_gradient(rate))
     unit = 1 / rate
     scaled = Scene(

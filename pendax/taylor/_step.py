@@ -20,6 +20,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ..special._cpu import stage
+from ._analytic import Analytic
 from ._first_zero import first_zero
 from ._series import Ramp, Scene, State, scaled_series
 
@@ -122,10 +123,16 @@ def method(
                 sizes.append(tolerance / forced * jnp.abs(sines[n]))
             return reduce(jnp.maximum, sizes)
 
-        last = 6 if isinstance(scene.tau, Ramp) else LAST
+        last, most = LAST, longest / quickest(scene)
+        if isinstance(scene.tau, Ramp):
+            last = 6
+        if isinstance(scene.tau, Analytic):
+            last = LAST if scene.tau.power() == 0 else scene.tau.power() + 5
+            # Of an entire function the type says what the last terms may not.
+            quickness = jnp.maximum(scene.tau.quickness(), jnp.finfo(most.dtype).tiny)
+            most = jnp.minimum(most, for_tangents(order, rtol, atol) / quickness)
         sizes = [relative(n) for n in range(order - last + 1, order + 1)]
-        own = reach(sizes, order, tolerance) / rate
-        return jnp.minimum(own, longest / quickest(scene))
+        return jnp.minimum(reach(sizes, order, tolerance) / rate, most)
 
     def size(scene, state, known=None):
         given = (scene, state) if known is None else (scene, state, known)
