@@ -49,22 +49,11 @@ _LONG = (
     f"{_SCALAR}; both errors are near 3e-12 there, what the roundings of t do, and why heyoka's is "
     "the smaller one has not been looked into"
 )
-_ANY_TORQUE = (
-    "our torque may be any function of time, of which no series is known, so we take Dopri8; "
-    "heyoka has the series of this one"
-)
-_ORDER_5 = (
-    "of order 5, and so with fewer evaluations at coarse tolerances; we take Dopri8 at all of them"
-)
 WHY = {
     ("damped and driven", "heyoka"): _MACHINE_CODE,
     ("damped", "heyoka"): _MACHINE_CODE,
     ("barely damped", "heyoka"): _LONG,
-    ("under a periodic torque", "heyoka"): _ANY_TORQUE,
-    ("under a periodic torque", "Tsit5"): _ORDER_5,
-    ("under a periodic torque", "Dopri5"): _ORDER_5,
-    ("under a periodic torque", "Dopri8"): "the same formula and steps, in a program that can be "
-    "differentiated, stops at what is not finite and counts its steps",
+    ("under a periodic torque", "heyoka"): _MACHINE_CODE,
 }
 
 

@@ -59,13 +59,18 @@ def _questions(quick: bool) -> Iterator[Question]:
     yield from motions("torque", 10.0, tau=0.5)[2:]
     yield from motions("overdamped", 10.0, beta=1e3)[2:]
     yield from motions("dry friction", 10.0, dry=0.05)[2:]
-    yield from motions("τ(t)", 10.0, lambda t: 0.5 * jnp.cos(t), beta=0.1)[2:]
+    yield from motions("τ(t)", 10.0, _wave, beta=0.1)[2:]
+    yield from motions("τ(t) with kinks", 10.0, lambda t: abs(_wave(t)), beta=0.1)[2:]
     # Averaging takes longest to compile, its derivatives minutes: those are left out.
     yield motions("barely damped", 1e6, lanes=1, beta=1e-6)[3]
     yield settled("settle, damped", beta=0.1)
     yield settled("settle, driven", beta=0.1, tau=0.05)
     yield settled("settle, dry", dry=0.05)
     yield settled("settle, dry and damped", beta=0.1, dry=0.05)
+
+
+def _wave(t):
+    return 0.5 * jnp.cos(t)
 
 
 def _timed_ones(quick: bool) -> list[Question]:
@@ -75,7 +80,8 @@ def _timed_ones(quick: bool) -> list[Question]:
     others = [
         motions("overdamped", 10.0, beta=1e3),
         motions("dry friction", 10.0, dry=0.05),
-        motions("τ(t)", 10.0, lambda t: 0.5 * jnp.cos(t), beta=0.1),
+        motions("τ(t)", 10.0, _wave, beta=0.1),
+        motions("τ(t) with kinks", 10.0, lambda t: abs(_wave(t)), beta=0.1),
     ]
     final = [x for asked in (damped, *others) for x in asked[3:]]
     last = settled("settle, damped", beta=0.1)
@@ -149,6 +155,8 @@ def _on_paper(question: Question, part: int) -> int | None:
             return None if question.gradient else paper.JUNCTION[question.name]
         case "damped" | "driven" | "torque":
             return paper.step(**terms, directions=directions)
+        case "τ(t)":
+            return paper.step(**terms, wave=True, directions=directions)
         case "overdamped" if part == 0:  # until v has relaxed
             return paper.step(beta=True, directions=directions)
         case "overdamped":

@@ -24,7 +24,8 @@ _FORBIDDEN = {
     "overdamped": ("custom calls", "diffrax", "event machinery"),
     "barely damped": ("custom calls", "diffrax", "event machinery", "the overdamped series"),
     "dry friction": ("custom calls", "diffrax", "the overdamped series"),
-    "τ(t)": ("custom calls", "event machinery", "the overdamped series"),
+    "τ(t)": ("custom calls", "diffrax", "event machinery", "the overdamped series"),
+    "τ(t) with kinks": ("custom calls", "event machinery", "the overdamped series"),
     "settle, damped": ("custom calls", "diffrax", "event machinery", "the overdamped series"),
     "settle, driven": ("custom calls", "diffrax", "event machinery", "the overdamped series"),
     "settle, dry": ("custom calls", "diffrax", "the overdamped series"),
@@ -44,9 +45,14 @@ def needless(question: Question, program: Program) -> Iterator[Row]:
     last = question.name == "final θ"
     for what in _FORBIDDEN[question.scene]:
         # At saved times diffrax has checks of its own, which call Python.
-        where = " for a last state" if last and question.scene == "τ(t)" else ""
+        where = " for a last state" if last and question.scene == "τ(t) with kinks" else ""
         yield {"scene": question.scene, "what": what + where, "count": found[what], "limit": 0}
-    if question.times is not None and question.many and not last and question.scene != "τ(t)":
+    if (
+        question.times is not None
+        and question.many
+        and not last
+        and question.scene != "τ(t) with kinks"
+    ):
         # The times as well, since a pendulum's own t0; diffrax has more copies of them.
         stored = program.carried(len(question.times) * question.lanes) - 1
         unasked = max(stored - (2 if question.name == "θ and v" else 1), 0)

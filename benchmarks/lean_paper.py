@@ -52,6 +52,8 @@ term m products, m − 1 sums and a division; N products by ε, N − 1 division
 and v in the rate's unit, the rate, 10 in all.  Its size: of four terms of θ and v the larger
 against its scale, its logarithm over n, the largest of them 31; the scales 7, an exponential, the
 longest 5.  θ and v by Horner 5 N.  Time 6.  β adds two operations to each term, and 3; a torque 4.
+A torque a cos t: sine and cosine, the first power and the square of the unit 4; a term from the
+one before the last 2, a, its unit and the sum 3, 5 N − 4 in all; its size now, its type 5.
 With tangents the size needs four terms of sin θ as well, one of them not needed by v: 2 N + 8.
 A tangent, of p: one sum of m + 1 products for each sine,
 none of cosines; 5 for each term of the force, with β 9, with τ 3 in all; Horner 4 N; 6 beside.
@@ -80,11 +82,11 @@ SETTLING, RUBBING_TO_REST = 18, 12
 _SIZE, _TIME = 31 + 7 + 5, 6
 
 
-def series(order: int, *, beta: bool = False, tau: bool = False) -> int:
+def series(order: int, *, beta: bool = False, tau: bool = False, wave: bool = False) -> int:
     """v to the power `order` of time, from θ and v."""
     sines = 2 * order * (order - 1) - 1
     force = order + order - 1
-    return sines + force + 10 + beta * (2 * order + 2) + tau * 4
+    return sines + force + 10 + beta * (2 * order + 2) + tau * 4 + wave * (5 * order + 5)
 
 
 def tangent(order: int, *, beta: bool = False, tau: bool = False) -> int:
@@ -95,11 +97,16 @@ def tangent(order: int, *, beta: bool = False, tau: bool = False) -> int:
 
 
 def step(
-    order: int | None = None, *, beta: bool = False, tau: bool = False, directions: int = 0
+    order: int | None = None,
+    *,
+    beta: bool = False,
+    tau: bool = False,
+    wave: bool = False,
+    directions: int = 0,
 ) -> int:
     order = order or (WITH_TANGENTS if directions else ORDER)
     terms = {"beta": beta, "tau": tau}
-    value = series(order, **terms) + _SIZE + beta + 5 * order + _TIME
+    value = series(order, **terms, wave=wave) + _SIZE + beta + 5 * order + _TIME
     forced = 2 * order + 8 if directions else 0
     return value + forced + directions * tangent(order, **terms)
 

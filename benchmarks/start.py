@@ -42,6 +42,7 @@ SCENES = {
     "simulate, free": "pendax.simulate(pendax.Pendulum(), ts, 1.0)",
     "simulate, damped": "pendax.simulate(pendax.Pendulum(1.0, 0.1), ts, 1.0)",
     "simulate, τ(t)": "pendax.simulate(pendax.Pendulum(1.0, 0.1, lambda t: t), ts, 1.0)",
+    "simulate, τ(t) with kinks": "pendax.simulate(pendax.Pendulum(1.0, 0.1, abs), ts, 1.0)",
     "settle": "pendax.settle(pendax.Pendulum(1.0, 0.1), 1.0)",
     "fit_trajectory": "pendax.fit_trajectory(ts, 0.1 * np.cos(ts), pendax.Pendulum(1.1))",
     "plot": "pendax.plot.style",
@@ -55,6 +56,7 @@ v0 = jnp.linspace(0.0, 4.0, 1000)
 scene = pendax.Pendulum(1.0, 0.1)
 """
 _DRIVEN = "pendax.Pendulum(1.0, 0.1, lambda t: 0.5 * jnp.cos(0.7 * t))"
+_KINKED = "pendax.Pendulum(1.0, 0.1, lambda t: 0.5 * jnp.abs(jnp.cos(0.7 * t)))"
 _TSIT5 = "import diffrax\n"
 CLOSED, TAYLOR, DIFFRAX = "closed form", "Taylor", "diffrax"
 # Each: by what, what is run before, and what is printed.
@@ -67,7 +69,12 @@ SWEEPS = {
         _TSIT5,
         "pendax.simulate(scene, 10.0, v0, solver=diffrax.Tsit5()).theta[500]",
     ),
-    "τ(t), θ(10), Dopri8": (DIFFRAX, "", f"pendax.simulate({_DRIVEN}, 10.0, v0).theta[500]"),
+    "τ(t), θ(10)": (TAYLOR, "", f"pendax.simulate({_DRIVEN}, 10.0, v0).theta[500]"),
+    "τ(t) with kinks, θ(10), Dopri8": (
+        DIFFRAX,
+        "",
+        f"pendax.simulate({_KINKED}, 10.0, v0).theta[500]",
+    ),
     "damped, θ at 100 times, Tsit5": (
         DIFFRAX,
         _TSIT5 + "ts = jnp.linspace(0.0, 10.0, 100)\n",
@@ -119,7 +126,7 @@ def _loaded():
         given = "import numpy as np\nimport pendax\nts = np.linspace(0.0, 10.0, 50)\n"
         modules = _modules(f"{given}{code}")
         rows.append({"after": name, **{heavy: heavy in modules for heavy in HEAVY}})
-        if name not in ("fit_trajectory", "plot", "simulate, τ(t)"):
+        if name not in ("fit_trajectory", "plot", "simulate, τ(t) with kinks"):
             count = sum(heavy in modules for heavy in HEAVY)
             bars.append(results.bar(f"heavy packages after {name}", count, at_most=0))
     return rows, bars

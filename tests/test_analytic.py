@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from pendax import Pendulum, fit_trajectory, simulate
+from pendax.taylor import order_for
 
 
 def precisely(tau):
@@ -61,6 +62,32 @@ def test_against_thirty_digits(name, dtype):
             assert run.method == "Taylor series"
             error = np.abs(np.stack([run.theta, run.v], -1) - true).max((1, 2))
             assert (error <= 50 * rtol * scale).all(), (beta, rtol, error / rtol / scale)
+
+
+def every_eighth(np, t):
+    """1 + Σ (4t)^(8n)/(8n)!, n > 0, as the sum over eighth roots of 1."""
+    t, part = 4 * t, 0.5**0.5
+    turning = (np.exp(part * t) + np.exp(-part * t)) * np.cos(part * t)
+    return 1 + ((np.exp(t) + np.exp(-t)) / 8 + np.cos(t) / 4 + turning / 4 - 1)
+
+
+@pytest.mark.parametrize(
+    "written",
+    [lambda np, t: 1 + 64 * t * t, lambda np, t: 1 + 64 * t**3, every_eighth],
+    ids=["square", "cubic", "every eighth"],
+)
+@pytest.mark.parametrize("order", [10, 12, 13, 14, 15, 16, 17, 18, 20])
+def test_a_rest_that_shows_little(written, order):
+    """Balanced at 90°, where several of the last terms vanish together; of every order."""
+    rtol = float(np.exp(2 * (4 - order)))
+    assert order_for(rtol, rtol) == order
+    ts = np.array([1.5])
+    (true,) = [references.trajectory(1.0, 0.0, precisely(written), np.pi / 2, 0.0, ts)]
+    scene = Pendulum(1.0, None, lambda t: written(jnp, t))
+    run = simulate(scene, jnp.asarray(ts), 0.0, np.pi / 2, rtol=rtol)
+    assert run.method == "Taylor series"
+    error = np.abs(np.stack([run.theta, run.v], -1) - np.array(true))
+    assert (error <= 50 * rtol * (1 + np.abs(true))).all(), error / rtol
 
 
 def test_backwards():

@@ -1,6 +1,7 @@
 """Taylor series of the motion itself, for terms that don't depend on time, or simply.
 
-τ may be a sine or samples that straight lines join; dry friction is a torque that is switched.
+τ may be a sine, a function that shows its series, or samples that straight lines join; dry friction
+is a torque that is switched.
 """
 
 from ._analytic import Analytic as Analytic

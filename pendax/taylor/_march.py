@@ -220,5 +220,5 @@ def _most(tau: Any, ts) -> Float[Array, "*lanes"]:
     """The most that |τ| is; of a function of time, twice what is met in a look at some."""
     if not isinstance(tau, Analytic):
         return largest(tau)
-    some = jnp.linspace(0, 1, 33, dtype=ts.dtype) * ts[jnp.argmax(jnp.abs(ts))]
+    some = jnp.linspace(0, 1, 17, dtype=ts.dtype) * ts[jnp.argmax(jnp.abs(ts))]
     return 2 * jnp.max(jnp.abs(jax.vmap(tau)(tau.clock + some)))
