@@ -15,16 +15,10 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ._arrays import difference_of_products
-from .special._elementary import sin_cos
+from .special._elementary import QUARTER, less_quarters, sin_cos
 from .special._steps import parity
 
 FloatArray = Float[Array, "..."]
-
-# π/2: the first part has 33 digits (float32: 8), the second the next 33 (11).
-_QUARTER = {
-    "float64": (1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21),
-    "float32": (1.5703125, 0.00048375129699707031, 7.549789954891882e-08),
-}
 
 
 class HalfAngle(NamedTuple):
@@ -39,17 +33,10 @@ class HalfAngle(NamedTuple):
 def half_angle(theta: FloatArray) -> HalfAngle:
     """To the last digit of the float as given, θ near odd multiples of π included.
 
-    θ/2 less quarter turns, π/2 in three parts of which the first times their number is
-    exact up to |θ| of 10⁶ (float32: 10³); beyond, to one eps of θ.  XLA's own sin and cos
-    are ten times slower, since they call a scalar library.
+    Up to |θ| of 10⁶ (float32: 10³); beyond, to one eps of θ.
     """
-    parts = _QUARTER[jnp.dtype(theta.dtype).name]
-    half = 0.5 * theta
-    quarters = jnp.round(half * (2 / jnp.pi))
-    rest = half
-    for part in parts:
-        rest = rest - quarters * part
-    sin, cos = sin_cos(jnp.clip(rest, -0.8, 0.8))
+    quarters, rest = less_quarters(0.5 * theta)
+    sin, cos = sin_cos(rest)
     odd = parity(quarters) < 0
     side = jnp.where(rest < 0, -1, 1)
     return HalfAngle(
@@ -62,7 +49,7 @@ def half_angle(theta: FloatArray) -> HalfAngle:
 def turned_by(turns: FloatArray, half: FloatArray) -> FloatArray:
     """`half` + π `turns`, rounded once up to 10⁶ turns (float32: 10³): an energy computed
     from a rotation's angle knows no more of it than its last digit."""
-    first, *parts = (2 * part for part in _QUARTER[jnp.dtype(half.dtype).name])
+    first, *parts = (2 * part for part in QUARTER[jnp.dtype(half.dtype).name])
     return turns * first + (turns * sum(parts) + half)
 
 

@@ -62,12 +62,12 @@ def _torque(wave, t):
 
 
 def _series(epsilon, beta, tau, theta, v, dthetas, dvs, rates):
-    """Coefficients of θ, v and of every direction's two."""
+    """Coefficients of θ, v and of every direction's two; those of `tau` as far as not 0."""
     thetas, vs = [theta], [v]
     sines, cosines = [theta.sin()], [theta.cos()]
     moved = [([a], [b]) for a, b in zip(dthetas, dvs, strict=True)]
     for n in range(ORDER):
-        force = -epsilon * sines[n] - beta * vs[n] + tau[n]
+        force = sum(tau[n : n + 1], -epsilon * sines[n] - beta * vs[n])
         vs.append(force / (n + 1))
         thetas.append(vs[n] / (n + 1))
         for (dtheta, dv), (of_epsilon, of_beta, of_tau) in zip(moved, rates, strict=True):

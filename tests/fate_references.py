@@ -35,7 +35,7 @@ def fate(beta, tau, theta0, v0):
         energy = v * v / 2 - theta.cos() - tau * theta
         if energy < -saddle.cos() - tau * saddle:
             return "captured", n
-        series = steps._series(arb(1), beta, tau, theta, v, [], [], [])
+        series = steps._series(arb(1), beta, [tau], theta, v, [], [], [])
         h = arb(min(steps._step(series[0]), steps._step(series[1]), 1.5 / max(1, float(beta))))
         after, moving = (steps._sum(x, h) for x in series)
         if well(after) == n + downhill and downhill * v > 0:
@@ -64,7 +64,7 @@ def _onwards(beta, tau, theta, v, angle):
     """The time to `angle`, passed with v > 0, and the velocity there; or None if it turns back."""
     t = arb(0)
     while True:
-        series = steps._series(arb(1), beta, tau, theta, v, [], [], [])
+        series = steps._series(arb(1), beta, [tau], theta, v, [], [], [])
         h = arb(min(steps._step(series[0]), steps._step(series[1]), 1.5 / max(1, float(abs(beta)))))
         after = steps._sum(series[0], h)
         if after > angle:

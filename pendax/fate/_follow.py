@@ -19,6 +19,7 @@ import jax.numpy as jnp
 from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
+from ..special._elementary import sin_cos_of_any
 from ..taylor import Scene, State, order_for, taylor
 from ._saddle import Saddle, before, well_of
 
@@ -38,7 +39,8 @@ class Followed(NamedTuple):
 
 def is_captured(scene: Scene, at: Saddle, state: State) -> Bool[Array, ""]:
     y = before(at, state.theta, well_of(at, state.theta))
-    depth = 2 * at.kappa * jnp.sin(0.5 * y) ** 2 - at.tau * (y - jnp.sin(y))
+    sine, cosine = sin_cos_of_any(0.5 * y)
+    depth = 2 * at.kappa * sine**2 - at.tau * (y - 2 * sine * cosine)
     square = scene.beta * scene.beta
     near = jnp.minimum(0.5 * square / jnp.maximum(at.tau, 1e-9), jnp.pi)
     reach = jnp.where(square > 3.03, 2 * jnp.pi, near)

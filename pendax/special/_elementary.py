@@ -1,4 +1,4 @@
-"""sin and cos, sinh, ln, the angle and RC on the short intervals where they are needed.
+"""sin and cos, sinh, ln, the angle and RC, mostly on the short intervals where they are needed.
 
 XLA's own sin, cos, log and atan2 call a scalar library for float64 on the CPU, 8 to
 25 ns a value; these polynomials vectorise and take about 1.  Each is Chebyshev
@@ -76,6 +76,44 @@ def sin_cos(w: FloatArray) -> tuple[FloatArray, FloatArray]:
 @sin_cos.defjvp
 def _sin_cos_jvp(primals, tangents):
     sin, cos = sin_cos(*primals)
+    return (sin, cos), (cos * tangents[0], -sin * tangents[0])
+
+
+# π/2: the first part has 33 digits (float32: 8), the second the next 33 (11, the third 12).
+QUARTER = {
+    "float64": (1.5707963267341256, 6.077100506303966e-11, 2.0222662487959506e-21),
+    "float32": (1.5703125, 0.0004837512969970703, 7.549533620476723e-08, 2.563344151594519e-12),
+}
+
+
+def less_quarters(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(n, x − n π/2): the first part of π/2 times n is exact up to n of 10⁶ (float32: 10³)."""
+    quarters = jnp.round(x * (2 / jnp.pi))
+    rest = x
+    for part in QUARTER[jnp.dtype(x.dtype).name]:
+        rest = rest - quarters * part
+    # Far out, where numbers are whole turns apart, it may be anything.
+    return quarters, jnp.clip(rest, -0.8, 0.8)
+
+
+@jax.custom_jvp
+def sin_cos_of_any(x: FloatArray) -> tuple[FloatArray, FloatArray]:
+    """(sin x, cos x) within 1.3 eps of each, for |x| up to 10⁶ (float32: 10³); further out as of
+    an x that is off by less than its last digit."""
+    quarters, rest = less_quarters(x)
+    sin, cos = sin_cos(rest)
+    quarters = quarters - 4 * jnp.floor(0.25 * quarters)
+    odd = (quarters == 1) | (quarters == 3)
+    sin, cos = jnp.where(odd, cos, sin), jnp.where(odd, sin, cos)
+    return (
+        jnp.where(quarters >= 2, -sin, sin),
+        jnp.where((quarters == 1) | (quarters == 2), -cos, cos),
+    )
+
+
+@sin_cos_of_any.defjvp
+def _sin_cos_of_any_jvp(primals, tangents):
+    sin, cos = sin_cos_of_any(*primals)
     return (sin, cos), (cos * tangents[0], -sin * tangents[0])
 
 

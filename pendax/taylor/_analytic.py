@@ -19,6 +19,8 @@ import jax.numpy as jnp
 from jax.extend.core import ClosedJaxpr, Jaxpr, Literal
 from jaxtyping import Array, Float
 
+from ..special._elementary import sin_cos_of_any
+
 _STEEPEST = 3  # the power of t up to which a step's last terms are known to show a motion from rest
 
 
@@ -185,6 +187,16 @@ def _of_linear(first: Callable, factor: Callable):
     return rule
 
 
+def _sine(middle, slope):
+    sin, cos = sin_cos_of_any(middle)
+    return [sin, cos * slope]
+
+
+def _cosine(middle, slope):
+    sin, cos = sin_cos_of_any(middle)
+    return [cos, -sin * slope]
+
+
 def _curved(slope, n: int):
     return -slope * slope * (1 / (n * (n - 1)))
 
@@ -202,7 +214,7 @@ _RULES = {
     "div": _quotient,
     "integer_pow": _power,
     "square": _power,
-    "sin": _of_linear(lambda c, s: [jnp.sin(c), jnp.cos(c) * s], _curved),
-    "cos": _of_linear(lambda c, s: [jnp.cos(c), -jnp.sin(c) * s], _curved),
+    "sin": _of_linear(_sine, _curved),
+    "cos": _of_linear(_cosine, _curved),
     "exp": _of_linear(lambda c, s: [jnp.exp(c)], lambda s, n: s * (1 / n)),
 }

@@ -17,6 +17,7 @@ import jax
 import jax.numpy as jnp
 from jax import lax
 
+from ..special._elementary import sin_cos_of_any
 from ._series import Scene, Sine, State, largest, sine_and_cosine, torque_series
 from ._step import STABLE, Method, method, plain
 
@@ -61,21 +62,21 @@ def _series(order: int, sweeps: int, scene: Scene, state: State):
     rate, delta = most / scene.beta, most / (scene.beta * scene.beta)
     epsilon = scene.epsilon / most
     tau = [x / most for x in torque_series(scene.tau, 1 / rate, order)]
+    sine, cosine = sin_cos_of_any(state.theta)
 
     def sweep(_, before):
         w: list[Any] = []
         theta: list[Any] = [state.theta]
-        sines: list[Any] = [jnp.sin(state.theta)]
-        cosines: list[Any] = [jnp.cos(state.theta)]
+        sines, cosines = [sine], [cosine]
         for n in range(order + 1):
             f = -epsilon * sines[n]
             if n < len(tau):
                 f = f + tau[n]
             w.append(f - delta * (n + 1) * before[n + 1])
             theta.append(w[n] / (n + 1))
-            sine, cosine = sine_and_cosine(theta, sines, cosines)
-            sines.append(sine)
-            cosines.append(cosine)
+            following = sine_and_cosine(theta, sines, cosines)
+            sines.append(following[0])
+            cosines.append(following[1])
         return jnp.stack([*w, jnp.zeros_like(rate)])
 
     # A loop, that its program be small.

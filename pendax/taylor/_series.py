@@ -20,6 +20,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from .._torque import SampledTorque
+from ..special._elementary import sin_cos_of_any
 from ._analytic import Analytic
 
 Scalar = Float[Array, ""]
@@ -74,8 +75,8 @@ def torque_series(tau: Any, unit: Any, order: int) -> list[Any]:
         return [tau.value, tau.slope * unit]
     if not isinstance(tau, Sine):
         return [tau]
-    wave = [jnp.sin(tau.clock), jnp.cos(tau.clock)]
-    wave += [-wave[0], -wave[1]]
+    sine, cosine = sin_cos_of_any(tau.clock)
+    wave = [sine, cosine, -sine, -cosine]
     growth, coefficients = tau.amplitude, []
     for n in range(order + 1):
         coefficients.append(growth * wave[n % 4])
@@ -115,8 +116,7 @@ def scaled_series(order: int, scene: Scene, state: State):
     )
     theta: list[Any] = [state.theta]
     v: list[Any] = [state.v * unit]
-    sines: list[Any] = [jnp.sin(state.theta)]
-    cosines: list[Any] = [jnp.cos(state.theta)]
+    sines, cosines = ([x] for x in sin_cos_of_any(state.theta))
     for n in range(order):
         v.append(force(scaled, sines, v, n) / (n + 1))
         theta.append(v[n] / (n + 1))
@@ -149,8 +149,8 @@ def sine_and_cosine(theta, sines, cosines):
     """The next coefficients of sin θ and cos θ, from all up to that of θ."""
     n = len(theta) - 1
     slopes = [k * theta[k] for k in range(1, n + 1)]
-    sine = sum(slope * cosines[n - k] for k, slope in enumerate(slopes, 1)) / n
-    cosine = sum(slope * sines[n - k] for k, slope in enumerate(slopes, 1)) / -n
+    sine = _added([slope * cosines[n - k] for k, slope in enumerate(slopes, 1)]) / n
+    cosine = _added([slope * sines[n - k] for k, slope in enumerate(slopes, 1)]) / -n
     return sine, cosine
 
 
@@ -162,6 +162,12 @@ def _(primals, tangents):
     first = sine_and_cosine(theta, sines, cosines)
     sines, cosines = [*sines, first[0]], [*cosines, first[1]]
     n = len(theta) - 1
-    of_sine = sum(cosines[n - k] * moved[k] for k in range(n + 1))
-    of_cosine = -sum(sines[n - k] * moved[k] for k in range(n + 1))
+    of_sine = _added([cosines[n - k] * moved[k] for k in range(n + 1)])
+    of_cosine = -_added([sines[n - k] * moved[k] for k in range(n + 1)])
     return first, (of_sine, of_cosine)
+
+
+def _added(terms):
+    """The sum, every other term by itself: additions of a chain wait for each other."""
+    first, second = sum(terms[::2]), sum(terms[1::2])
+    return first + second if len(terms) > 1 else first

@@ -174,8 +174,34 @@ def reach(sizes: list[Scalar], order: int, tolerance: float) -> Scalar:
     As far as its n-th term, whose relative `sizes` are of the last ones, is tolerance^(n/N): by
     the root test, as if the terms were those of a geometric series.
     """
-    roots = [jnp.log(x) / n for n, x in enumerate(sizes, order - len(sizes) + 1)]
-    return jnp.exp(math.log(tolerance) / order - reduce(jnp.maximum, roots))
+    roots = [_log2(x) / n for n, x in enumerate(sizes, order - len(sizes) + 1)]
+    return _exp2(math.log2(tolerance) / order - reduce(jnp.maximum, roots))
+
+
+# What a step's size needs of them.  To all digits they were slower than the rest of it: XLA's CPU
+# backend calls a library, number by number.
+
+
+def _log2(x: Scalar) -> Scalar:
+    """Within 0.044, of which an n-th root is left: the bits of a float, read as an integer.
+
+    Of 0 it is that of the smallest number, of what is not finite that of the largest.
+    """
+    info = jnp.finfo(x.dtype)
+    bits = lax.bitcast_convert_type(x, jnp.int32 if info.bits == 32 else jnp.int64)
+    bits = (bits >> (info.bits - 32)).astype(jnp.int32)  # whose conversions are vectorised
+    one = 2.0 ** (info.nmant - (info.bits - 32))
+    return bits.astype(x.dtype) * (1 / one) + (info.minexp - 1 + 0.043)
+
+
+def _exp2(x: Scalar) -> Scalar:
+    """Within 0.3 %: parabolas between powers of two, which have to be in range."""
+    info = jnp.finfo(x.dtype)
+    whole = jnp.floor(x)
+    part = x - whole
+    biased = (whole.astype(jnp.int32) + (1 - info.minexp)).astype(f"int{info.bits}")
+    power = lax.bitcast_convert_type(biased << info.nmant, x.dtype)
+    return power * (1 + part * (0.66 + 0.34 * part))
 
 
 def plain(function: Callable, *arguments):

@@ -22,6 +22,7 @@ from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
 from .._torque import SampledTorque
+from ..special._elementary import sin_cos_of_any
 from ._series import Ramp, Scene, State
 from ._step import Method
 
@@ -67,7 +68,7 @@ def _force(scene: Scene, theta: Scalar, tau: Any) -> tuple[Scalar, Scalar]:
     A rounding more: what has come to the edge, or begins on it, stays, and what is let go of has
     an acceleration.
     """
-    weight = scene.epsilon * jnp.sin(theta)
+    weight = scene.epsilon * sin_cos_of_any(theta)[0]
     rounding = 8 * jnp.finfo(theta.dtype).eps * (jnp.abs(tau) + jnp.abs(weight) + scene.dry)
     return lax.stop_gradient((tau - weight, scene.dry + rounding))
 
@@ -141,7 +142,7 @@ def _rubbing(method: Method, scene: Scene, tau, slope, at: Stretch, end: Scalar)
     release, onwards = end, jnp.zeros_like(way)
     if slope is not None:
         onwards = lax.stop_gradient(jnp.sign(slope))
-        force = tau - scene.epsilon * jnp.sin(at.state.theta)
+        force = tau - scene.epsilon * sin_cos_of_any(at.state.theta)[0]
         steep = jnp.where(slope == 0, 1, slope)
         release = at.t + jnp.maximum((onwards * scene.dry - force) / steep, 0)
         released = (slope != 0) & (release < end)
