@@ -18,7 +18,7 @@ TRANSCENDENTAL = {
 }  # fmt: skip
 # Not comparisons, selections and the bits of a sign.
 ARITHMETIC = ROOTS | TRANSCENDENTAL | {
-    "abs", "add", "ceil", "divide", "floor", "maximum", "minimum", "multiply", "negate",
+    "abs", "add", "ceil", "clamp", "divide", "floor", "maximum", "minimum", "multiply", "negate",
     "remainder", "round-nearest-even", "subtract",
 }  # fmt: skip
 _SAME = {"bitcast", "copy", "opt-barrier", "optimization-barrier", "reshape"}

@@ -48,11 +48,13 @@ terms 2, real and imaginary part 6, argument 2, turned by φ0 7, turns and φ 7.
 and a quotient 4 and 5, R Ic 1.  Its derivatives, by JAX from these, are not counted.
 
 One step of Taylor's method of order N: 2 N (N − 1) − 1 for the series of sin θ and cos θ, each
-term m products, m − 1 sums and a division; N products by ε, N − 1 divisions; sine and cosine, ε
-and v in the rate's unit, the rate, 10 in all.  Its size: of four terms of θ and v the larger
-against its scale, its logarithm over n, the largest of them 31; the scales 7, an exponential, the
-longest 5.  θ and v by Horner 5 N.  Time 6.  β adds two operations to each term, and 3; a torque 4.
-A torque a cos t: sine and cosine, the first power and the square of the unit 4; a term from the
+term m products, m − 1 sums and a division; N products by ε, N − 1 divisions; ε and v in the rate's
+unit, the rate, 8 in all; sine and cosine of any angle 52: which quarter 2, the angle from it in
+three parts 6, within bounds 1, two polynomials 37, the quarter of its turn 4, signs 2.  Its size:
+of four terms of θ and v the larger against its scale, its logarithm, roughly, over n, the largest
+of them 35; the scales 7, an exponential, roughly, 7, the longest 4.  θ and v by Horner 5 N.
+Time 6.  β adds two operations to each term, and 3; a torque 4.
+A torque a cos t: sine and cosine 52, the first power and the square of the unit 2; a term from the
 one before the last 2, a, its unit and the sum 3, 5 N − 4 in all; its size now, its type 5.
 With tangents the size needs four terms of sin θ as well, one of them not needed by v: 2 N + 8.
 A tangent, of p: one sum of m + 1 products for each sine,
@@ -79,14 +81,16 @@ JUNCTION = {
 # Of the tolerance 8e-15, and of 1e-12.
 ORDER, WITH_TANGENTS, RUBBING = 20, 14, 16
 SETTLING, RUBBING_TO_REST = 18, 12
-_SIZE, _TIME = 31 + 7 + 5, 6
+_CIRCLE = 2 + 6 + 1 + 37 + 4 + 2  # sine and cosine of any angle
+_SIZE, _TIME = 35 + 7 + 7 + 4, 6
 
 
 def series(order: int, *, beta: bool = False, tau: bool = False, wave: bool = False) -> int:
     """v to the power `order` of time, from θ and v."""
     sines = 2 * order * (order - 1) - 1
     force = order + order - 1
-    return sines + force + 10 + beta * (2 * order + 2) + tau * 4 + wave * (5 * order + 5)
+    once = 8 + _CIRCLE + wave * (_CIRCLE + 3)
+    return sines + force + once + beta * (2 * order + 2) + tau * 4 + wave * 5 * order
 
 
 def tangent(order: int, *, beta: bool = False, tau: bool = False) -> int:
@@ -114,14 +118,14 @@ def step(
 def slow_step(order: int = 8, sweeps: int = 5) -> int:
     """Overdamped: sweeps of a series with v̇ from the one before, each term with 3 more."""
     sweep = 2 * order * (order + 1) - 1 + 3 * (order + 1)
-    once = 14 + 2  # rate, δ and its multiples, sine and cosine
+    once = 14 + _CIRCLE  # rate, δ and its multiples
     return sweeps * sweep + once + _SIZE + 5 * order + 1 + _TIME
 
 
 def settling_step(*, beta: bool = False, tau: bool = False) -> int:
     """And whether it is caught: wells before and after 19 each, the distance to the saddle 7,
-    the energies 11, the creeping 1; its time is a sum."""
-    return step(SETTLING, beta=beta, tau=tau) - _TIME + 1 + 2 * 19 + 7 + 11 + 1
+    the energies 11 and a sine and cosine, the creeping 1; its time is a sum."""
+    return step(SETTLING, beta=beta, tau=tau) - _TIME + 1 + 2 * 19 + 7 + 11 + _CIRCLE + 1
 
 
 def rubbing_step(order: int = RUBBING) -> int:
@@ -129,10 +133,10 @@ def rubbing_step(order: int = RUBBING) -> int:
 
     Each term of a polynomial with its slope takes 4.  Where v first comes to nothing: at the end
     of the step, 6 Newton steps to a dip, 8 to a zero.  There four terms more to land on it, and
-    whether friction holds the pendulum.
+    whether friction holds the pendulum, by a sine.
     """
     slope, bend = 4 * order - 2, 4 * (order - 1) - 2
     zero = (order - 1) + slope + 1 + 6 * (bend + 4) + 2 * order + 4 + 8 * (slope + 4) + 3
     turn = order + 1 + zero + 6  # v in the direction of motion
     landed = series(4, tau=True) + 2 + 33
-    return step(order, tau=True) - _TIME + 4 + turn + landed + 2 + 15
+    return step(order, tau=True) - _TIME + 4 + turn + landed + 2 + 14 + _CIRCLE - 1

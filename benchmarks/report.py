@@ -28,9 +28,10 @@ def text() -> str:
         "elliptic-functions) as many as it likes, SciPy, GSL, Boost, mpmath and pyjjasim one. "
         "Errors of functions are in eps of the scale, of angles in rad, of gradients over "
         "1 + |gradient|, of energies relative. On the same machine and versions errors come out "
-        "the same. On another, those of SciPy's and diffrax's solvers may not: the linear algebra "
-        "in them (OpenBLAS) rounds as the processor's kernels do, and the environment variable "
-        "OPENBLAS_CORETYPE chooses these.",
+        "the same. On another, what roundings decide may not: the mean velocities of fate by parts "
+        "in 1e10, for a reason not yet traced, and what SciPy's and diffrax's solvers give: the "
+        "linear algebra in them (OpenBLAS) rounds as the processor's kernels do, and the "
+        "environment variable OPENBLAS_CORETYPE chooses these.",
     ]
     for name, about in TOPICS.items():
         if not (results.FOLDER / f"{name}.json").exists():

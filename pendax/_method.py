@@ -44,12 +44,18 @@ class TaylorSeries(Method):
     max_steps: Array | None
     stiff: bool = eqx.field(static=True)
     moving_times: bool = eqx.field(static=True)
+    moving_start: bool = eqx.field(static=True, default=False)
     name: str = eqx.field(static=True, default="Taylor series")
 
     def __call__(self, scene: Pendulum, times, v0, theta0, t0) -> Any:
         tau, clock = scene.tau, callable(scene.tau)
         if callable(tau) and not isinstance(tau, SampledTorque):
             tau = analytic(tau, times.dtype)
+            if tau is None:  # or there would be no torque
+                raise ValueError(
+                    "Argument `tau` must be the same function under `jit` as outside of it; "
+                    "solver=diffrax.Dopri8() takes any."
+                )
         terms = Scene(scene.epsilon, scene.beta, tau, scene.dry)
         start, elapsed = State(theta0, v0), times - t0
         most = budget(since(terms, t0), start, elapsed)
@@ -68,6 +74,7 @@ class TaylorSeries(Method):
             atol=self.atol,
             stiff=self.stiff,
             moving_times=self.moving_times,
+            moving_start=self.moving_start and clock,
         )
         arrived = jnp.all(jnp.isfinite(states.theta) & jnp.isfinite(states.v))
         failed = Result.where(end.going, Result.too_many_steps, Result.solver_failed)
@@ -139,7 +146,7 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
     _require_switching(pendulum, plain, span)
     backwards = span is not None and bool(np.any(span < 0))
     sampled = isinstance(pendulum.tau, SampledTorque) and not backwards
-    if plain and (not callable(pendulum.tau) or sampled or _is_entire(pendulum, dtype)):
+    if plain and (not callable(pendulum.tau) or sampled or _is_entire(pendulum, dtype, span)):
         # Who speaks of steps wants them.
         free = all(options[x] is None for x in ("rtol", "atol", "max_steps"))
         if free and span is not None and _barely_damped(pendulum, span, dtype):
@@ -154,6 +161,7 @@ def choose(pendulum: Pendulum, ts, t0, v0, dtype, solver: Any, options: dict[str
             # A line's end would start another relaxation.
             stiff=not callable(pendulum.tau) and _overdamped(pendulum) is not False,
             moving_times=span is None,
+            moving_start=_hidden(t0),
         )
     import diffrax as dfx
 
@@ -220,11 +228,31 @@ def _barely_damped(pendulum: Pendulum, span, dtype) -> bool:
     return bool(weak and np.all(span > 0) and np.max(span) * np.min(root) > 1e4)
 
 
-def _is_entire(pendulum: Pendulum, dtype) -> bool:
-    """Whether τ is a function that shows what it is, and no lane needs an implicit step."""
+_LASTING = 300  # turns of e^ in a span: what decays faster is over, and held its steps short
+
+
+def _is_entire(pendulum: Pendulum, dtype, span) -> bool:
+    """Whether τ is a function that shows what it is, no lane needs an implicit step, and it goes on
+    as it began."""
     if not callable(pendulum.tau) or isinstance(pendulum.tau, SampledTorque):
         return False
-    return not _overdamped(pendulum) and analytic(pendulum.tau, dtype) is not None
+    if _overdamped(pendulum):
+        return False
+    # As it is read where it is followed: `filter_jit` hides its arrays.
+    arrays = (jax.Array, np.ndarray, np.generic)
+    numbers, rest = eqx.partition(pendulum.tau, lambda x: isinstance(x, arrays))
+    growths: list[Any] = []
+
+    def growth(numbers):
+        tau = analytic(eqx.combine(numbers, rest), dtype)
+        growths.append(None if tau is None else tau.growth())
+        return growths[-1]
+
+    jax.eval_shape(growth, numbers)
+    hidden = span is None or _hidden(*jax.tree.leaves(numbers))
+    if growths[0] is None or isinstance(growths[0], float) or hidden:
+        return growths[0] is not None
+    return bool(jax.jit(growth)(numbers) * np.max(np.abs(span)) <= _LASTING)
 
 
 def _overdamped(pendulum: Pendulum) -> bool | None:

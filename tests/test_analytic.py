@@ -10,7 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 
-from pendax import Pendulum, fit_trajectory, simulate
+from pendax import Pendulum, SampledTorque, fit_trajectory, simulate
 from pendax.taylor import order_for
 
 
@@ -162,6 +162,28 @@ def test_derivatives_in_the_times():
     np.testing.assert_allclose(jax.grad(shifted)(0.0), x["rate"] * by_phase, rtol=1e-11)
 
 
+@pytest.mark.parametrize("sampled", [False, True])
+def test_derivatives_in_the_start(sampled):
+    """At a saved time that is t0, where no step is taken: by hand, from θ̇ and the equation."""
+    if sampled:
+        tau, value, slope = SampledTorque(jnp.array([-1.0, 1.0]), jnp.array([-0.5, 1.5])), 0.5, 1.0
+    else:
+        tau, value, slope = lambda t: 0.5 * jnp.cos(2 * t) + jnp.sin(t), 0.5, 1.0
+    beta, theta0, v0 = 0.1, 0.2, 0.3
+
+    def started(t0):
+        run = simulate(Pendulum(1.0, beta, tau), 0.0, v0, theta0, t0=t0, rtol=1e-3)
+        assert run.method == "Taylor series"
+        return jnp.stack([run.theta, run.v])
+
+    force = value - np.sin(theta0) - beta * v0
+    jerk = slope - np.cos(theta0) * v0 - beta * force
+    for mode in (jax.jacfwd, jax.jacrev):
+        np.testing.assert_allclose(mode(started)(0.0), [-v0, -force], rtol=1e-14)
+    second = jax.jit(jax.jacfwd(jax.jacrev(started)))(0.0)
+    np.testing.assert_allclose(second, [force, jerk - 2 * slope], rtol=1e-13)
+
+
 def test_the_function_decides():
     """What has kinks, poles, or is not seen from afar is left to diffrax, and right there too."""
 
@@ -205,6 +227,53 @@ class Wave(eqx.Module):
         return self.size * jnp.sin(t)
 
 
+class Power(eqx.Module):
+    """An exponent that is an array is known where it can be seen, and hidden by `jit`."""
+
+    power: jax.Array | int
+
+    def __call__(self, t):
+        return 0.5 * t**self.power
+
+
+@pytest.mark.parametrize("power", [2, jnp.array(2)])
+def test_a_function_that_is_another_under_jit(power):
+    (true,) = references.trajectory(1.0, 0.125, lambda t: 0.5 * t * t, 0.0, 0.5, [3.0])
+    scene = Pendulum(1.0, 0.125, Power(power))
+    for run in (
+        simulate(scene, 3.0, 0.5),
+        jax.jit(lambda: simulate(scene, 3.0, 0.5))(),
+        eqx.filter_jit(lambda scene: simulate(scene, 3.0, 0.5))(scene),
+    ):
+        np.testing.assert_allclose([run.theta, run.v], true, rtol=1e-9)
+
+
+def test_what_is_soon_over():
+    """Whose type would hold steps short to the end; where it can be seen."""
+    scene = Pendulum(1.0, 0.1, lambda t: 0.5 * jnp.sin(t) + jnp.exp(-1e4 * t))
+    run = simulate(scene, 20.0, 0.0)
+    assert run.method == "Dopri8"
+    assert simulate(scene, 0.01, 0.0).method == "Taylor series"
+    near = simulate(scene, 0.01, 0.0)
+    rest = simulate(
+        Pendulum(1.0, 0.1, lambda t: 0.5 * jnp.sin(t)), 20.0, near.v, near.theta, t0=0.01
+    )
+    np.testing.assert_allclose(run.theta, rest.theta, rtol=1e-9)
+
+
+def test_a_function_of_no_numbers():
+    """An empty sum, and what is no number at all."""
+    none = jnp.zeros(0)
+    scene = Pendulum(1.0, 0.1, lambda t: jnp.sum(none * jnp.sin(none * t)) + jnp.sin(t))
+    run = simulate(scene, 3.0, 0.5)
+    assert run.method == "Taylor series"
+    np.testing.assert_allclose(
+        run.theta, simulate(Pendulum(1.0, 0.1, jnp.sin), 3.0, 0.5).theta, rtol=1e-14
+    )
+    with pytest.raises(TypeError):
+        simulate(Pendulum(1.0, 0.1, lambda t: [jnp.sin(t)]), 3.0, 0.5)
+
+
 def test_a_fit_under_a_wave():
     """A torque that is known and held, and what it moves."""
     true = Pendulum(1.5, 0.2, Wave(jnp.array(0.5)))
@@ -219,6 +288,8 @@ def test_budgets():
     late = Pendulum(1.0, None, lambda t: 2.0 * t)
     run = simulate(late, 60.0, 0.0)  # v = t² in the end
     assert jnp.isfinite(run.theta)
+    strong = Pendulum(1.0, 0.1, lambda t: 1e4 * jnp.sin(jnp.pi * t))  # 0 at 16 equal steps
+    assert jnp.isfinite(simulate(strong, 16.0, 0.0, rtol=1e-8).theta)
     wild = Pendulum(1.0, None, lambda t: jnp.exp(t))
     run = simulate(wild, 40.0, 0.0, throw=False, max_steps=50)
     assert jnp.isnan(run.theta)

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-from jax.extend.core import ClosedJaxpr, Jaxpr, Literal
+from jax.extend.core import Jaxpr, Literal
 from jaxtyping import Array, Float
 
 from ..special._elementary import sin_cos_of_any
@@ -45,6 +45,10 @@ class Analytic(eqx.Module):
         """The exponential type, 1/s."""
         return jnp.asarray(self._seen().quickness, self.clock.dtype)
 
+    def growth(self) -> Any:
+        """The part of it that is due to exp, 1/s; the number 0.0 where there is none."""
+        return self._seen().growth
+
     def power(self) -> int:
         """The highest power of t."""
         return self._seen().power
@@ -61,11 +65,10 @@ class Analytic(eqx.Module):
 def analytic(tau: Callable, dtype: Any) -> Analytic | None:
     """`tau` as one, or `None` where it is not known to be."""
     t = jnp.zeros((), dtype)
-    closed: ClosedJaxpr = jax.make_jaxpr(tau)(t)
-    found = Analytic(closed.consts, t, closed.jaxpr)
-    (aval,) = closed.out_avals if len(closed.out_avals) == 1 else (None,)
-    if aval is None or aval.shape != () or aval.dtype != dtype:
+    closed, result = jax.make_jaxpr(tau, return_shape=True)(t)
+    if not isinstance(result, jax.ShapeDtypeStruct) or (result.shape, result.dtype) != ((), dtype):
         return None
+    found = Analytic(closed.consts, t, closed.jaxpr)
     powers = []
     try:
         jax.eval_shape(lambda: powers.append(found.power()))
@@ -79,11 +82,13 @@ class _Unknown(Exception):
 
 
 class _Entire(NamedTuple):
-    """The coefficients as far as they are not 0, the type, and the highest power of t."""
+    """The coefficients as far as they are not 0, the type, the highest power of t, and the type
+    without what oscillates."""
 
     terms: list[Any]
     quickness: Any = 0.0
     power: int = 0
+    growth: Any = 0.0
 
 
 def _followed(jaxpr: Jaxpr, numbers: list[Any], inputs: list[_Entire], order: int):
@@ -116,7 +121,7 @@ def _outputs(equation, inputs: list[_Entire], order: int) -> list[_Entire]:
     kept = _dtype(equation.outvars[0]) == _dtype(equation.invars[0])
     if name in _LINEAR and kept:
         (x,) = inputs
-        return [_Entire([bound(term) for term in x.terms], x.quickness, x.power)]
+        return [x._replace(terms=[bound(term) for term in x.terms])]
     if name in _RULES and kept:
         return [_RULES[name](inputs, equation.params, bound, order)]
     raise _Unknown(name)
@@ -132,7 +137,13 @@ def _sum(inputs, _, __, ___):
     alone = [*x.terms[len(both) :], *y.terms[len(both) :]]
     # Where one is a number among arrays.
     terms = [*both, *(jnp.broadcast_to(a, both[0].shape) for a in alone)]
-    return _Entire(terms, jnp.maximum(x.quickness, y.quickness), max(x.power, y.power))
+    quickness = jnp.maximum(x.quickness, y.quickness)
+    return _Entire(terms, quickness, max(x.power, y.power), _either(x.growth, y.growth))
+
+
+def _either(a: Any, b: Any) -> Any:
+    """The larger, a number where both are."""
+    return max(a, b) if isinstance(a, float) and isinstance(b, float) else jnp.maximum(a, b)
 
 
 def _difference(inputs, parameters, bound, order: int):
@@ -150,14 +161,15 @@ def _product(inputs, _, bound, order: int):
     for n in range(min(len(x.terms) + len(y.terms) - 1, order + 1)):
         pairs = range(max(0, n + 1 - len(y.terms)), min(n + 1, len(x.terms)))
         terms.append(sum(bound(x.terms[k], y.terms[n - k]) for k in pairs))
-    return _Entire(terms, x.quickness + y.quickness, x.power + y.power)
+    quickness, growth = x.quickness + y.quickness, x.growth + y.growth
+    return _Entire(terms, quickness, x.power + y.power, growth)
 
 
 def _quotient(inputs, _, __, ___):
     x, y = inputs
     if len(y.terms) > 1:
         raise _Unknown("a pole, perhaps")
-    return _Entire([term / y.terms[0] for term in x.terms], x.quickness, x.power)
+    return x._replace(terms=[term / y.terms[0] for term in x.terms])
 
 
 def _power(inputs, parameters, _, order: int):
@@ -170,7 +182,7 @@ def _power(inputs, parameters, _, order: int):
     return found
 
 
-def _of_linear(first: Callable, factor: Callable):
+def _of_linear(first: Callable, factor: Callable, grows: bool = False):
     """f(c + s t): of c and s its `first` coefficients, as many as the `factor` goes back by."""
 
     def rule(inputs, _, __, order: int):
@@ -182,7 +194,8 @@ def _of_linear(first: Callable, factor: Callable):
         back = len(terms)
         for n in range(back, order + 1):
             terms.append(terms[n - back] * factor(slope, n))
-        return _Entire(terms[: order + 1], jnp.max(jnp.abs(slope)), 0)
+        quickness = jnp.max(jnp.abs(slope), initial=0)
+        return _Entire(terms[: order + 1], quickness, 0, quickness if grows else 0.0)
 
     return rule
 
@@ -216,5 +229,5 @@ _RULES = {
     "square": _power,
     "sin": _of_linear(_sine, _curved),
     "cos": _of_linear(_cosine, _curved),
-    "exp": _of_linear(lambda c, s: [jnp.exp(c)], lambda s, n: s * (1 / n)),
+    "exp": _of_linear(lambda c, s: [jnp.exp(c)], lambda s, n: s * (1 / n), grows=True),
 }

@@ -6,6 +6,7 @@ from typing import Any, NamedTuple
 
 import jax
 import jax.numpy as jnp
+import numpy as np
 from jax import lax
 from jaxtyping import Array, Bool, Float, Int
 
@@ -41,13 +42,18 @@ def marched(
     atol: float,
     stiff: bool,
     moving_times: bool,
+    moving_start: bool = False,
 ) -> tuple[State, March | Stretch]:
     """[`march`][] with derivatives of every mode and order; NaN where it did not arrive.
 
     `moving_times`: whether `ts`, too, may be differentiated.  `t0`: when `start` holds, for a
-    scene that has a clock.
+    scene that has a clock; `moving_start`: whether it may be differentiated.
     """
     t0 = jnp.zeros_like(ts[0]) if t0 is None else t0
+    if moving_start:
+        # On from t0 to where it is held fixed: at a saved time there no step would move with it.
+        fixed = lax.stop_gradient(t0)
+        start, t0 = _moved(scene, start, t0, fixed - t0), fixed
 
     def solve(tangents, scene, start, ts, extra):
         most, options = extra[0].astype(jnp.int32), {"stiff": stiff, "tangents": tangents}
@@ -74,14 +80,13 @@ def with_derivatives(
     )
     states, said = by_columns(value, leaves, careful)
     if moving_times:
-        states = jax.vmap(partial(_moved, scene))(states, ts)
+        fixed = lax.stop_gradient(ts)
+        states = jax.vmap(partial(_moved, scene))(states, fixed, ts - fixed)
     return states, said
 
 
-def _moved(scene: Scene, state: State, t: Scalar) -> State:
-    """The state at t, with its derivatives in t."""
-    at = lax.stop_gradient(t)
-    late = t - at
+def _moved(scene: Scene, state: State, at: Scalar, late: Scalar) -> State:
+    """A state that holds at `at`, a time later that is zero but for its derivatives."""
     if is_switched(scene):
         # The line through τ there; along it the time moves by `late` alone, or it counts twice.
         scene, moving = momentary(scene, at, state)
@@ -220,5 +225,7 @@ def _most(tau: Any, ts) -> Float[Array, "*lanes"]:
     """The most that |τ| is; of a function of time, twice what is met in a look at some."""
     if not isinstance(tau, Analytic):
         return largest(tau)
-    some = jnp.linspace(0, 1, 17, dtype=ts.dtype) * ts[jnp.argmax(jnp.abs(ts))]
+    # Uneven, or all of them might be its zeros; the ends are two of them.
+    part = np.append(np.arange(16) * (0.5 * np.sqrt(5) - 0.5) % 1, 1)
+    some = jnp.asarray(part, ts.dtype) * ts[jnp.argmax(jnp.abs(ts))]
     return 2 * jnp.max(jnp.abs(jax.vmap(tau)(tau.clock + some)))
