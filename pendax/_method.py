@@ -249,9 +249,10 @@ def _is_entire(pendulum: Pendulum, dtype, span) -> bool:
         return growths[-1]
 
     jax.eval_shape(growth, numbers)
-    hidden = span is None or _hidden(*jax.tree.leaves(numbers))
-    if growths[0] is None or isinstance(growths[0], float) or hidden:
+    if growths[0] is None or isinstance(growths[0], float):
         return growths[0] is not None
+    if span is None or _hidden(*jax.tree.leaves(numbers)):
+        return True
     return bool(jax.jit(growth)(numbers) * np.max(np.abs(span)) <= _LASTING)
 
 

@@ -5,6 +5,7 @@ from functools import partial
 import damped_references as references
 import diffrax as dfx
 import equinox as eqx
+import flint
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -225,6 +226,21 @@ class Wave(eqx.Module):
 
     def __call__(self, t):
         return self.size * jnp.sin(t)
+
+
+def test_a_late_clock():
+    """In float32, of a phase of 4e6 that is known exactly."""
+    with jax.enable_x64(False):
+        scene = Pendulum(1.0, 1.0, lambda t: 100.0 * jnp.sin(256.0 * t))
+        ts = jnp.array([16388.0, 16400.0])
+        run = simulate(scene, ts, 0.25, 0.5, t0=16384.0)
+    # Time counts from there; what is over are whole turns but for a phase.
+    phase = float((flint.arb(256 * 16384) / (2 * flint.arb.pi())).mid())
+    phase = 2 * np.pi * (phase - np.round(phase))
+    true = references.trajectory(
+        1.0, 1.0, lambda t: 100 * (256 * t + phase).sin(), 0.5, 0.25, [4.0, 16.0]
+    )
+    np.testing.assert_allclose(np.stack([run.theta, run.v], -1), true, atol=2e-5)
 
 
 class Power(eqx.Module):

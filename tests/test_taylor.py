@@ -294,3 +294,16 @@ def test_at_rest_and_huge():
         true = np.array(references.trajectory(*terms, *start, [t])[0])
         error = np.abs(np.array([run.theta, run.v]) - true) / (1 + np.abs(true))
         assert error.max() < 1e-11, terms
+
+
+def test_flights_that_gravity_does_not_bend(dtype):
+    """All terms of the series are 0 by underflow: one step is right."""
+    small = dtype == np.float32
+    for epsilon, speed in ((1e-30, 1e4), (1, 1e20)) if small else ((1e-300, 1e5), (1, 1e160)):
+        scene = Pendulum(dtype.type(epsilon), dtype.type(0))
+        ts = np.array([1e-3, 1e4], dtype)
+        run = simulate(scene, ts, dtype.type(speed), dtype.type(0.3))
+        assert run.stats["steps"] == 2
+        true = 0.3 + float(dtype.type(speed)) * ts.astype(float)
+        np.testing.assert_allclose(run.theta, true, rtol=4 * np.finfo(dtype).eps)
+        np.testing.assert_allclose(run.v, dtype.type(speed), rtol=4 * np.finfo(dtype).eps)

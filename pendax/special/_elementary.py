@@ -92,8 +92,8 @@ def less_quarters(x: FloatArray) -> tuple[FloatArray, FloatArray]:
     rest = x
     for part in QUARTER[jnp.dtype(x.dtype).name]:
         rest = rest - quarters * part
-    # Far out, where numbers are whole turns apart, it may be anything.
-    return quarters, jnp.clip(rest, -0.8, 0.8)
+    # The number of them is off by one far out, and where numbers are turns apart by anything.
+    return quarters, jnp.clip(rest, -1.5, 1.5)
 
 
 @jax.custom_jvp

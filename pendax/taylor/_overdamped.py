@@ -67,7 +67,8 @@ def _series(order: int, sweeps: int, scene: Scene, state: State):
     def sweep(_, before):
         w: list[Any] = []
         theta: list[Any] = [state.theta]
-        sines, cosines = [sine], [cosine]
+        sines: list[Any] = [sine]
+        cosines: list[Any] = [cosine]
         for n in range(order + 1):
             f = -epsilon * sines[n]
             if n < len(tau):

@@ -116,7 +116,9 @@ def scaled_series(order: int, scene: Scene, state: State):
     )
     theta: list[Any] = [state.theta]
     v: list[Any] = [state.v * unit]
-    sines, cosines = ([x] for x in sin_cos_of_any(state.theta))
+    sine, cosine = sin_cos_of_any(state.theta)
+    sines: list[Any] = [sine]
+    cosines: list[Any] = [cosine]
     for n in range(order):
         v.append(force(scaled, sines, v, n) / (n + 1))
         theta.append(v[n] / (n + 1))

@@ -175,7 +175,8 @@ def reach(sizes: list[Scalar], order: int, tolerance: float) -> Scalar:
     the root test, as if the terms were those of a geometric series.
     """
     roots = [_log2(x) / n for n, x in enumerate(sizes, order - len(sizes) + 1)]
-    return _exp2(math.log2(tolerance) / order - reduce(jnp.maximum, roots))
+    power = math.log2(tolerance) / order - reduce(jnp.maximum, roots)
+    return jnp.where(jnp.isfinite(power), _exp2(power), jnp.where(power > 0, jnp.inf, 0))
 
 
 # What a step's size needs of them.  To all digits they were slower than the rest of it: XLA's CPU
@@ -185,13 +186,14 @@ def reach(sizes: list[Scalar], order: int, tolerance: float) -> Scalar:
 def _log2(x: Scalar) -> Scalar:
     """Within 0.044, of which an n-th root is left: the bits of a float, read as an integer.
 
-    Of 0 it is that of the smallest number, of what is not finite that of the largest.
+    ∞ of what is not a number, too.
     """
     info = jnp.finfo(x.dtype)
     bits = lax.bitcast_convert_type(x, jnp.int32 if info.bits == 32 else jnp.int64)
     bits = (bits >> (info.bits - 32)).astype(jnp.int32)  # whose conversions are vectorised
     one = 2.0 ** (info.nmant - (info.bits - 32))
-    return bits.astype(x.dtype) * (1 / one) + (info.minexp - 1 + 0.043)
+    log = bits.astype(x.dtype) * (1 / one) + (info.minexp - 1 + 0.043)
+    return jnp.where(x == 0, -jnp.inf, jnp.where(x < jnp.inf, log, jnp.inf))
 
 
 def _exp2(x: Scalar) -> Scalar:
