@@ -301,7 +301,7 @@ def test_flights_that_gravity_does_not_bend(dtype):
     small = dtype == np.float32
     for epsilon, speed in ((1e-30, 1e4), (1, 1e20)) if small else ((1e-300, 1e5), (1, 1e160)):
         scene = Pendulum(dtype.type(epsilon), dtype.type(0))
-        ts = np.array([1e-3, 1e4], dtype)
+        ts = np.array([1e-3, 1.0], dtype)
         run = simulate(scene, ts, dtype.type(speed), dtype.type(0.3))
         assert run.stats["steps"] == 2
         true = 0.3 + float(dtype.type(speed)) * ts.astype(float)
