@@ -43,7 +43,12 @@ STARTS = ((0.0, 0.0), (np.pi / 2, 0.0), (-np.pi / 2, 0.0), (np.pi, 0.0), (0.25, 
 TS = np.array([0.5, 2.0, 6.0, 12.0])
 
 
-@pytest.mark.parametrize("name", TORQUES)
+# In float32 some of them: the references are other ones, and take most of the time.
+CASES = [(name, "float64") for name in TORQUES]
+CASES += [(name, "float32") for name in ("a wave", "fading", "a cubic")]
+
+
+@pytest.mark.parametrize(("name", "dtype"), CASES, indirect=["dtype"])
 def test_against_thirty_digits(name, dtype):
     written = TORQUES[name]
     starts = np.array(STARTS, dtype)
@@ -77,7 +82,10 @@ def every_eighth(np, t):
     [lambda np, t: 1 + 64 * t * t, lambda np, t: 1 + 64 * t**3, every_eighth],
     ids=["square", "cubic", "every eighth"],
 )
-@pytest.mark.parametrize("order", [10, 12, 13, 14, 15, 16, 17, 18, 20])
+@pytest.mark.parametrize(
+    "order",
+    [10, 13, 16, 20, *(pytest.param(n, marks=pytest.mark.full) for n in (12, 14, 15, 17, 18))],
+)
 def test_a_rest_that_shows_little(written, order):
     """Balanced at 90°, where several of the last terms vanish together; of every order."""
     rtol = float(np.exp(2 * (4 - order)))
@@ -181,8 +189,9 @@ def test_derivatives_in_the_start(sampled):
     jerk = slope - np.cos(theta0) * v0 - beta * force
     for mode in (jax.jacfwd, jax.jacrev):
         np.testing.assert_allclose(mode(started)(0.0), [-v0, -force], rtol=1e-14)
-    second = jax.jit(jax.jacfwd(jax.jacrev(started)))(0.0)
-    np.testing.assert_allclose(second, [force, jerk - 2 * slope], rtol=1e-13)
+    if not sampled:  # it takes half a minute to compile
+        second = jax.jit(jax.jacfwd(jax.jacrev(started)))(0.0)
+        np.testing.assert_allclose(second, [force, jerk - 2 * slope], rtol=1e-13)
 
 
 def test_the_function_decides():
