@@ -228,7 +228,8 @@ def _barely_damped(pendulum: Pendulum, span, dtype) -> bool:
     return bool(weak and np.all(span > 0) and np.max(span) * np.min(root) > 1e4)
 
 
-_LASTING = 300  # turns of e^ in a span: what decays faster is over, and held its steps short
+# An exponent's change over the span: what decays by more is soon over, and steps stay as short.
+_LASTING = 300
 
 
 def _is_entire(pendulum: Pendulum, dtype, span) -> bool:
