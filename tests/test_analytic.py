@@ -145,7 +145,7 @@ def test_gradients(mode):
 
 def test_second_derivatives_and_lanes():
     size = jnp.array([0.375, 0.5])
-    slope = jax.grad(lambda size: angle(AT | {"size": size}))
+    slope = jax.jit(jax.grad(lambda size: angle(AT | {"size": size})))  # to be compiled once
     lanes = jax.vmap(slope)(size)
     np.testing.assert_allclose(lanes, [slope(x) for x in size], rtol=1e-12)
     for mode in (jax.grad, jax.jacfwd):
