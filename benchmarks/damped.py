@@ -37,23 +37,15 @@ def measure(seed: int, quick: bool) -> results.Tables:
     }
 
 
-_MACHINE_CODE = (
-    "machine code made for this equation, eight lanes at a time, with every coefficient computed "
-    "once; XLA computes the series thrice, for the size of the step, for θ and for v"
-)
-_SCALAR = (
-    "machine code made for this equation, with every coefficient computed once; XLA computes the "
-    "series thrice, for the size of the step, for θ and for v"
-)
 _LONG = (
-    f"{_SCALAR}; both errors are near 3e-12 there, what the roundings of t do, and why heyoka's is "
-    "the smaller one has not been looked into"
+    f"{front.MACHINE_CODE}; both errors are near 3e-12 there, what the roundings of t do, and why "
+    "heyoka's is the smaller one has not been looked into"
 )
 WHY = {
-    ("damped and driven", "heyoka"): _MACHINE_CODE,
-    ("damped", "heyoka"): _MACHINE_CODE,
+    ("damped and driven", "heyoka"): front.MACHINE_CODE,
+    ("damped", "heyoka"): front.MACHINE_CODE,
     ("barely damped", "heyoka"): _LONG,
-    ("under a periodic torque", "heyoka"): _MACHINE_CODE,
+    ("under a periodic torque", "heyoka"): front.MACHINE_CODE,
 }
 
 

@@ -15,7 +15,7 @@ from jax import lax
 from jaxtyping import Array, Float
 
 from ._arrays import difference_of_products
-from .special._elementary import QUARTER, less_quarters, sin_cos
+from .special._elementary import QUARTER, less_quarters, power_of_two, sin_cos
 from .special._steps import parity
 
 FloatArray = Float[Array, "..."]
@@ -118,13 +118,5 @@ def scaled(epsilon: FloatArray, v0: FloatArray) -> tuple[FloatArray, FloatArray,
     _, exponent = jnp.frexp(lax.stop_gradient(speed))
     limit = jnp.finfo(v0.dtype).maxexp - 24  # both 2^±limit are normal numbers
     exponent = jnp.clip(exponent, -limit, limit)
-    unit, inverse = (_power_of_two(n, v0.dtype) for n in (exponent, -exponent))
+    unit, inverse = (power_of_two(n, v0.dtype) for n in (exponent, -exponent))
     return unit, epsilon * inverse * inverse, v0 * inverse
-
-
-def _power_of_two(exponent, dtype) -> FloatArray:
-    """A normal number, by its bits: `jnp.ldexp` calls a power function."""
-    bits = jnp.finfo(dtype)
-    whole = jnp.int64 if bits.bits == 64 else jnp.int32
-    biased = exponent.astype(whole) + (bits.maxexp - 1)
-    return lax.bitcast_convert_type(biased << bits.nmant, dtype)

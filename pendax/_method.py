@@ -239,22 +239,18 @@ def _is_entire(pendulum: Pendulum, dtype, span) -> bool:
         return False
     if _overdamped(pendulum):
         return False
-    # As it is read where it is followed: `filter_jit` hides its arrays.
-    arrays = (jax.Array, np.ndarray, np.generic)
-    numbers, rest = eqx.partition(pendulum.tau, lambda x: isinstance(x, arrays))
-    growths: list[Any] = []
+    if span is None or _hidden(*jax.tree.leaves(pendulum.tau)):
+        return eqx.filter_eval_shape(_growth, pendulum.tau, dtype) is not None
+    with jax.ensure_compile_time_eval():  # or a number would be hidden inside of `jit`
+        growth = _growth(pendulum.tau, dtype)
+    return growth is not None and bool(float(growth) * np.max(np.abs(span)) <= _LASTING)
 
-    def growth(numbers):
-        tau = analytic(eqx.combine(numbers, rest), dtype)
-        growths.append(None if tau is None else tau.growth())
-        return growths[-1]
 
-    jax.eval_shape(growth, numbers)
-    if growths[0] is None or isinstance(growths[0], float):
-        return growths[0] is not None
-    if span is None or _hidden(*jax.tree.leaves(numbers)):
-        return True
-    return bool(jax.jit(growth)(numbers) * np.max(np.abs(span)) <= _LASTING)
+@eqx.filter_jit
+def _growth(tau, dtype) -> Any:
+    """Of an entire function of time, else `None`; as it is read where it is followed."""
+    found = analytic(tau, dtype)
+    return None if found is None else found.growth()
 
 
 def _overdamped(pendulum: Pendulum) -> bool | None:

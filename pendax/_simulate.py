@@ -14,7 +14,7 @@ from ._method import choose
 from ._motion import motion
 from ._pendulum import Pendulum, require_free
 from ._results import Result, raise_if, where
-from ._torque import SampledTorque
+from ._torque import SampledTorque, unfolded
 
 
 class Trajectory(eqx.Module):
@@ -66,14 +66,17 @@ def simulate(
       what is linear in t: Taylor's method as well, unless β is as large as above, or an exponent
       changes by more than 300, after which nothing is left of it.  `simulate` reads that off the
       function; its steps are as short as its quickest part asks for, however small that is.
-    - τ another function of t, or with such a β: diffrax's `Dopri8`, or its `Kvaerno5`.
+    - τ another function of t, or with such a β: diffrax's `Dopri8`, or its `Kvaerno5`.  A pulse
+      shorter than their steps may be stepped over: a saved time within it, or `dtmax` of a
+      `PIDController`, prevents that.
 
     Under a transformation β may be hidden: the program then has both of the second line's, and
     never the third's.
 
     **Arguments:**
 
-    - `pendulum`: the scene, ε in 1/s², β in 1/s, τ in 1/s², a number or a function of t.
+    - `pendulum`: the scene, ε in 1/s², β in 1/s, τ in 1/s², a number or a function of t that JAX
+      can trace, and differentiate by what it closes over.
     - `ts`: times, s; for the closed form in any order and of either sign, else one axis,
       monotone away from `t0`.
     - `v0`, `theta0`: angular velocity, rad/s, and angle, rad, at `t0`, s.
@@ -102,13 +105,14 @@ def simulate(
     are derivatives of what is NaN, and, in reverse mode, of a sum over other lanes by what they
     share with it, even where it is masked: put another start in its place instead.
 
-    **Raises:** `ValueError` for a solver's options where the closed form answers, and for
-    times that are not monotone where it does not; `RuntimeError` where a solver fails: too many
-    steps, steps held small by the damping, a number that is not finite.  NaN, infinities, and
-    under a transformation ε ≤ 0, β < 0 and c < 0, give NaN in their own lane, and its `result` says
-    so.  Traced times can't be checked to be monotone: by Taylor's method they are followed in
-    the order given; diffrax checks several of them by a callback, which keeps the program out of
-    JAX's persistent cache but for `EQX_ON_ERROR=nan` in the environment: NaN instead of an error.
+    **Raises:** `ValueError` for a solver's options where the closed form answers, for a τ(t) that
+    is not one real number, and for times that are not monotone where a solver does; `RuntimeError`
+    where a solver fails: too many steps, steps held small by the damping, a number that is not
+    finite.  NaN, infinities, and under a transformation ε ≤ 0, β < 0 and c < 0, give NaN in their
+    own lane, and its `result` says so.  Traced times can't be checked to be monotone: by Taylor's
+    method they are followed in the order given; diffrax checks several of them by a callback, which
+    keeps the program out of JAX's persistent cache but for `EQX_ON_ERROR=nan` in the environment:
+    NaN instead of an error.
 
     **Accuracy** of the closed form: 16 eps of |f| + Σ |x ∂f/∂x| over ε, t, v0, θ0 for f = θ
     and of that + |t ε sin θ| for v, for |v0| up to 1e8, |θ0| to 1e3, 1e6 periods, ε from
@@ -194,8 +198,11 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     if dtype in (jnp.float16, jnp.bfloat16):
         raise ValueError(f"Arguments must be float32 or float64 for a solver, but got {dtype}.")
     require_monotone(ts, t0)
-    if isinstance(pendulum.tau, SampledTorque):
-        pendulum.tau.require_within(ts, t0)
+    tau = pendulum.tau
+    if isinstance(tau, SampledTorque):
+        tau.require_within(ts, t0)
+    elif callable(tau):
+        pendulum = eqx.tree_at(lambda p: p.tau, pendulum, unfolded(tau, dtype))
     if options["dt0"] is not None:
         options["dt0"] = jnp.asarray(options["dt0"], dtype)
     shape = lanes["v0"].shape

@@ -1,11 +1,45 @@
-"""A torque as it was recorded: samples joined by straight lines."""
+"""Torques that depend on time: a function, and samples joined by straight lines."""
+
+from collections.abc import Callable
+from typing import Any
 
 import equinox as eqx
+import jax
 import jax.numpy as jnp
 import numpy as np
+from jax.core import Tracer
 from jaxtyping import Array, ArrayLike, Float, Int
 
 from ._arrays import common, concrete, inexact, require
+
+
+def unfolded(tau: Callable, dtype: Any) -> Callable:
+    """`tau`; where it holds what is being traced in a closure, with that as leaves of a pytree.
+
+    Derivatives by what stays hidden would be lost, without a word, in programs of their own.
+
+    **Raises:** `ValueError` where it isn't one real number as a function of one time.
+    """
+    t = jnp.zeros((), dtype)
+    try:
+        opened = eqx.filter_closure_convert(tau, t)
+        found = jax.eval_shape(opened, t)
+    except jax.errors.JAXTypeError as error:
+        raise ValueError(
+            "Argument `tau` must be a function that JAX can trace: of jnp.sin, jnp.where and the "
+            "like, not of NumPy's or math's functions, nor of an `if` on t."
+        ) from error
+    if isinstance(found, jax.ShapeDtypeStruct):
+        if found.shape or jnp.issubdtype(found.dtype, jnp.complexfloating):
+            raise ValueError(
+                f"Argument `tau` must return one real number, but got {found.dtype} of shape "
+                f"{found.shape}. Lanes, each with a torque of its own, come through `jax.vmap`."
+            )
+    elif not isinstance(found, int | float):
+        raise ValueError(f"Argument `tau` must return one real number, but got {found!r}.")
+    open_to_all = {id(x) for x in jax.tree.leaves(tau)}
+    hidden = (x for x in jax.tree.leaves(opened) if id(x) not in open_to_all)
+    return opened if any(isinstance(x, Tracer) for x in hidden) else tau
 
 
 class SampledTorque(eqx.Module):

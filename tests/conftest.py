@@ -15,6 +15,10 @@ jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_numpy_dtype_promotion", "strict")
 jax.config.update("jax_numpy_rank_promotion", "raise")
 
+# Tracing makes millions of objects that live on: a third of its time went into looking at them
+# again and again for cycles.
+gc.set_threshold(100_000, 50, 100)
+
 ROOT = Path(__file__).parent.parent
 
 

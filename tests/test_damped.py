@@ -7,6 +7,7 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
+from scipy.integrate import solve_ivp
 
 from pendax import Pendulum, Result, simulate
 
@@ -118,19 +119,46 @@ def test_constant_steps_that_are_traced():
     np.testing.assert_allclose(slope, adaptive, rtol=1e-8)
 
 
-def test_a_torque_of_time_with_parameters():
-    """A function that closes over what is differentiated, as `Partial` carries it."""
+TORQUES = {  # a τ(t) of each kind, by what it closes over, and its derivative by that
+    "kink": (lambda a, t: a * abs(t - 2.0), lambda a, t: abs(t - 2.0)),
+    "wave": (lambda a, t: jnp.cos(a * t), lambda a, t: -t * np.sin(a * t)),
+    "decay": (lambda a, t: a * jnp.exp(-a * t), lambda a, t: (1 - a * t) * np.exp(-a * t)),
+}
 
-    def last(amplitude):
-        torque = jax.tree_util.Partial(lambda a, t: a[0] * jnp.cos(a[1] * t), amplitude)
-        return simulate(Pendulum(1.0, 0.2, torque), 6.0, 0.3).theta
 
-    a, h = jnp.array([0.4, 0.7]), 1e-5
-    steps = h * np.eye(2)
-    difference = [(last(a + step) - last(a - step)) / (2 * h) for step in steps]
-    np.testing.assert_allclose(jax.grad(last)(a), difference, rtol=1e-7)
-    plain = simulate(Pendulum(1.0, 0.2, lambda t: 0.4 * jnp.cos(0.7 * t)), 6.0, 0.3).theta
-    np.testing.assert_allclose(plain, last(a), rtol=1e-12)
+@pytest.mark.parametrize("kind", TORQUES)
+@pytest.mark.parametrize("carried", [False, True])
+def test_a_torque_with_a_parameter(kind, carried):
+    """What a function closes over is seen, as what a `Partial` carries is."""
+    torque, slope = TORQUES[kind]
+
+    def last(a):
+        tau = jax.tree_util.Partial(torque, a) if carried else lambda t: torque(a, t)
+        return simulate(Pendulum(1.0, 0.2, tau), 6.0, 0.3).theta
+
+    def by_scipy(t, y):
+        bent = -0.2 * y[3] - np.cos(y[0]) * y[2] + slope(0.7, t)
+        return y[1], -0.2 * y[1] - np.sin(y[0]) + float(torque(0.7, t)), y[3], bent
+
+    options = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-12, "max_step": 0.5}
+    true = solve_ivp(by_scipy, (0, 6.0), [0, 0.3, 0, 0], **options).y[:, -1]
+    value, first = jax.jit(jax.value_and_grad(last))(0.7)
+    np.testing.assert_allclose([value, first], true[[0, 2]], rtol=1e-8)
+    if not carried:
+        one = jnp.array([0.7])
+        np.testing.assert_allclose(jax.vmap(jax.jacfwd(last))(one), true[2:3], rtol=1e-8)
+
+
+def test_torques_that_are_no_numbers():
+    for tau, what in (
+        (lambda t: jnp.array([1.0, 2.0]) * t, r"float64 of shape \(2,\). Lanes"),
+        (lambda t: jax.lax.complex(t, t), "one real number, but got complex128"),
+        (lambda t: None, "one real number, but got None"),
+        (np.sin, "that JAX can trace"),
+        (lambda t: 1.0 if t > 2 else 0.0, "that JAX can trace"),
+    ):
+        with pytest.raises(ValueError, match=what):
+            simulate(Pendulum(1.0, 0.2, tau), 6.0, 0.3)
 
 
 def test_terms_that_are_none_are_not_in_the_program():

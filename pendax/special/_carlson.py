@@ -9,7 +9,7 @@ from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common, widened
 from ._duplication import finite, kernel, ordered, rd, rf, rf_steps, root, sum_of_steps
-from ._elementary import reciprocal
+from ._elementary import power_of_two, reciprocal
 
 FloatArray = Float[Array, "..."]
 
@@ -120,31 +120,36 @@ def _rg_jvp(primals, tangents):
     # ∂RG/∂x = RF/4 − x RD(y, z, x)/12 (DLMF 19.18.1 and 19.21.10), in which there is little to
     # cancel but for the largest argument.  Its own is from the sum of x ∂RG/∂x, RG/2.
     (x, y, z), (dx, dy, dz) = ordered(*primals, tangents)
-    value, unit = rg(*primals), _unit(x, y, z)
+    value, (unit, root_of_unit) = rg(*primals), _unit(x, y, z)
     x, y, z = x * unit, y * unit, z * unit
     first = finite(0.25 * rf(x, y, z))
     of_x = first - x / 12 * finite(rd(y, z, x))
     of_y = first - y / 12 * finite(rd(x, z, y))
-    of_z = (0.5 * value * jnp.sqrt(unit) - x * of_x - y * of_y) / z
-    return value, jnp.sqrt(unit) * (of_x * dx + of_y * dy + of_z * dz)
+    of_z = (0.5 * value * root_of_unit - x * of_x - y * of_y) / z
+    return value, root_of_unit * (of_x * dx + of_y * dy + of_z * dz)
 
 
 def _unit(x, y, z):
-    """RG is of degree 1/2.  By this the two larger get sizes whose product is 1, so that
-    nothing leaves the range of the floats on the way."""
+    """A power of four u, and √u: what RG, of degree 1/2, may be scaled by without a rounding.
+
+    The two larger get sizes whose product is about 1, so that nothing leaves the range of the
+    floats on the way."""
     ((_, y, z),) = ordered(*map(lax.stop_gradient, (x, y, z)))
     y = jnp.where(y > 0, y, jnp.where(z > 0, z, 1))
-    return 1 / (jnp.sqrt(y) * jnp.sqrt(jnp.maximum(y, z)))
+    _, exponent = jnp.frexp(jnp.sqrt(y) * jnp.sqrt(jnp.maximum(y, z)))
+    most = jnp.finfo(y.dtype).maxexp // 2 - 2
+    half = jnp.clip(-(exponent // 2), -most, most)
+    return power_of_two(2 * half, y.dtype), power_of_two(half, y.dtype)
 
 
 def _rg_value(count, x, y, z):
-    arguments, unit = (x, y, z), _unit(x, y, z)
+    arguments, (unit, root_of_unit) = (x, y, z), _unit(x, y, z)
     ((x, y, z),) = ordered(x * unit, y * unit, z * unit)
     flat = y == 0
     y = jnp.where(flat, 1, y)
     rest = jnp.sqrt(x) * (jnp.sqrt(z) / jnp.sqrt(y))
     value = rest + sum_of_steps(count, x, z, y, y, 1 / 3 * (y - x) * (z - y))
-    value = 0.5 * jnp.where(flat, jnp.sqrt(z), value) / jnp.sqrt(unit)
+    value = jnp.where(flat, jnp.sqrt(z), value) * (0.5 / root_of_unit)
     endless = jnp.isinf(arguments[0] + arguments[1] + arguments[2])
     value = jnp.where(endless, jnp.inf, value)
     none_below = jnp.minimum(arguments[0], jnp.minimum(arguments[1], arguments[2])) >= 0

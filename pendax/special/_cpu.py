@@ -29,6 +29,7 @@ def once(function: Callable, *arguments: Any) -> Any:
 
 def stage(function: Callable, *arguments: Any) -> Any:
     """[`once`][] whatever the size, for what `vmap` will make large."""
+    function = jax.jit(function)  # traced, differentiated and mapped once for all platforms
 
     def never(*arguments):
         results = jax.eval_shape(function, *arguments)

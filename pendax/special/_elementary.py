@@ -10,7 +10,7 @@ term.  The same coefficients serve float32.
 import jax
 import jax.numpy as jnp
 from jax import lax
-from jaxtyping import Array, Float
+from jaxtyping import Array, Float, Int
 
 FloatArray = Float[Array, "..."]
 
@@ -214,3 +214,11 @@ def rc_any(e: FloatArray, y: FloatArray) -> FloatArray:
     below = jnp.where(low, y, 0.25)
     s = jnp.sqrt(1 - below)
     return jnp.where(low, 0.5 * log((1 + s) * (1 + s) * reciprocal(below)) / s, middle)
+
+
+def power_of_two(exponent: Int[Array, "..."], dtype) -> FloatArray:
+    """A normal number, by its bits: `jnp.ldexp` calls a power function."""
+    bits = jnp.finfo(dtype)
+    whole = jnp.int64 if bits.bits == 64 else jnp.int32
+    biased = exponent.astype(whole) + (bits.maxexp - 1)
+    return lax.bitcast_convert_type(biased << bits.nmant, dtype)
