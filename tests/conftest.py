@@ -29,6 +29,12 @@ def dtype(request):
         yield jax.numpy.dtype(request.param)
 
 
+# For what compiles long and is the same code in both.
+float32_in_full = pytest.mark.parametrize(
+    "dtype", ["float64", pytest.param("float32", marks=pytest.mark.full)], indirect=True
+)
+
+
 @pytest.fixture(autouse=True, scope="module")
 def forget_compiled_programs():
     """After each file: a process may map 65,530 pieces of memory, and some hundred programs of

@@ -45,7 +45,8 @@ TS = np.array([0.5, 2.0, 6.0, 12.0])
 
 # In float32 some of them: the references are other ones, and take most of the time.
 CASES = [(name, "float64") for name in TORQUES]
-CASES += [(name, "float32") for name in ("a wave", "fading", "a cubic")]
+CASES += [pytest.param(n, "float32", marks=pytest.mark.full) for n in ("a wave", "a cubic")]
+CASES += [("fading", "float32")]
 
 
 @pytest.mark.parametrize(("name", "dtype"), CASES, indirect=["dtype"])
@@ -299,6 +300,7 @@ def test_a_function_of_no_numbers():
         simulate(Pendulum(1.0, 0.1, lambda t: [jnp.sin(t)]), 3.0, 0.5)
 
 
+@pytest.mark.full
 def test_a_fit_under_a_wave():
     """A torque that is known and held, and what it moves."""
     true = Pendulum(1.5, 0.2, Wave(jnp.array(0.5)))

@@ -63,6 +63,7 @@ def test_fresh_boundaries(over):
             assert stays != passes
 
 
+@pytest.mark.full
 def test_fresh_critical_torques():
     starts = [
         (0.3, 1.0, 0.5),

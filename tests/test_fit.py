@@ -39,7 +39,9 @@ def fits(kind, rows, starts, noise):
     return jax.vmap(one)(rows, starts, noise)
 
 
-@pytest.mark.parametrize("kind", ["libration", "separatrix", "damped"])
+@pytest.mark.parametrize(
+    "kind", ["libration", pytest.param("separatrix", marks=pytest.mark.full), "damped"]
+)
 def test_thirty_percent_off(kind, dtype):
     """To 1e-8 in float64, from where every phase is lost within a period or two."""
     rows = fit_scenes.scenes(kind, 24, 11)
@@ -150,7 +152,13 @@ def test_measured_torque_is_held():
     np.testing.assert_allclose([fit.v0, fit.theta0], [0.5, 0.2], rtol=1e-7)
 
 
-@pytest.mark.parametrize("optimiser", [None, optax.lbfgs()], ids=["root of the loss", "optax"])
+@pytest.mark.parametrize(
+    "optimiser",
+    [
+        pytest.param(None, id="root of the loss", marks=pytest.mark.full),
+        pytest.param(optax.lbfgs(), id="optax"),
+    ],
+)
 def test_a_robust_loss_forgives_outliers(optimiser):
     rng = np.random.default_rng(4)
     theta = motion() + 0.005 * rng.normal(size=TS.size)
@@ -171,6 +179,7 @@ def test_a_robust_loss_forgives_outliers(optimiser):
     assert float(plain.reduced_chi2) > 100
 
 
+@pytest.mark.full
 def test_further_starts_find_what_one_misses():
     """From a scene with four times the ε, a minimum elsewhere; it says so."""
     guess = Pendulum(4.0 * 2.6, 0.0)
@@ -212,6 +221,7 @@ def test_a_damping_that_is_not_there():
     assert 0 < float(fit.errors["beta"]) < 0.01
 
 
+@pytest.mark.full
 def test_a_loss_bent_downwards_says_nothing():
     """Residuals of 30 stated errors: most samples are outliers."""
     theta = motion() + 0.01 * np.random.default_rng(4).normal(size=TS.size)

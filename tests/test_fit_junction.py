@@ -156,6 +156,7 @@ def test_measured_overdamped_loop(shared, tmp_path, capsys, standard_promotion):
     assert np.sqrt(np.mean((rows[far, 1] - rows[far, 3]) ** 2)) < 2e-6
 
 
+@pytest.mark.full
 def test_measured_underdamped_loop(shared):
     path = shared / "data" / "josephson" / "kit_fprakt_JJ2_iv.csv"
     voltage, current = np.loadtxt(path, delimiter=",", skiprows=1).T

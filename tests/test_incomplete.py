@@ -10,6 +10,7 @@ import jax.numpy as jnp
 import numpy as np
 import pytest
 import scipy.special
+from conftest import float32_in_full
 from elliptic_references import error, legendre, truth
 from flint import arb
 
@@ -63,6 +64,7 @@ def legendre_points(dtype, size, seed):
 
 
 @pytest.mark.parametrize(("function", "name"), [(ellipkinc, "f"), (ellipeinc, "e")])
+@float32_in_full
 def test_first_and_second_kind(function, name, dtype):
     _, phi, m = legendre_points(dtype, 20, 11)
     check(function, legendre(name, "m"), [phi, m], dtype, second=True)
@@ -81,6 +83,7 @@ def test_close_to_one(function, name, dtype):
     check(of, legendre(name, "m1"), [phi, m1], dtype, second=False)
 
 
+@float32_in_full
 def test_third_kind(dtype):
     columns = legendre_points(dtype, 12, 13)
     check(ellippiinc, legendre("pi", "m"), columns, dtype, second=False)
@@ -99,6 +102,7 @@ def test_second_derivatives_of_the_third_kind():
     check(ellippiinc, legendre("pi", "m"), [n, phi, m], dtype, second=True)
 
 
+@pytest.mark.full
 def test_third_kind_close_to_one():
     rng = np.random.default_rng(15)
     m1 = 10 ** rng.uniform(-250, 0, 48)

@@ -157,7 +157,7 @@ def test_first_derivatives(tag, dtype):
 
 
 @pytest.mark.parametrize("tag", ["special", *TAGS])
-@pytest.mark.parametrize("mode", [jax.hessian, twice_forward])
+@pytest.mark.parametrize("mode", [jax.hessian, pytest.param(twice_forward, marks=pytest.mark.full)])
 def test_second_derivatives(tag, mode):
     """1e-12 × scale in uu, and in um and mm for |m1| >= 1e-3, |u| >= 0.1; elsewhere 1e-11
     of the largest of the four outputs'.  Where |m1| < 1e-140, past half a period, second

@@ -89,7 +89,16 @@ def execute(path):
     return notebook
 
 
-@pytest.mark.parametrize("path", sorted((ROOT / "notebooks").glob("*.ipynb")), ids=lambda p: p.stem)
+QUICK = ("elliptic", "separatrix")  # the others take a minute or two each
+
+
+@pytest.mark.parametrize(
+    "path",
+    [
+        pytest.param(path, id=path.stem, marks=[] if path.stem in QUICK else pytest.mark.full)
+        for path in sorted((ROOT / "notebooks").glob("*.ipynb"))
+    ],
+)
 def test_notebook_runs(path):
     pictures = sum("image/png" in str(cell.get("outputs")) for cell in execute(path).cells)
     assert pictures >= 2

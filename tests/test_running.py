@@ -94,7 +94,10 @@ def scenes():
     return found
 
 
-@pytest.mark.parametrize(("beta", "tau"), scenes())
+@pytest.mark.parametrize(
+    ("beta", "tau"),
+    [x if i % 2 else pytest.param(*x, marks=pytest.mark.full) for i, x in enumerate(scenes())],
+)
 def test_mean_velocity(beta, tau):
     """1e-10 relative, and derivatives 1e-7, against differences of 30 digits."""
     true = float(references.mean_velocity(beta, tau))
@@ -178,6 +181,7 @@ def test_lanes():
         retrapping_torque(-1.0)
 
 
+@pytest.mark.full
 def test_curvature():
     """Second derivatives, against differences of first ones."""
     hessian = jax.hessian(running, (0, 1))(0.5, 0.8)

@@ -85,7 +85,7 @@ def true_slope(epsilon, beta, tau, v0):
     return row[0], row[2]
 
 
-@pytest.mark.parametrize("mode", [jax.jacfwd, jax.grad])
+@pytest.mark.parametrize("mode", [jax.jacfwd, pytest.param(jax.grad, marks=pytest.mark.full)])
 def test_derivatives_of_fast_rotations(mode, dtype):
     """∂θ/∂ε while the motion knows little of ε, whose steps could be longer than a turn."""
     rtol = 1e-10 if dtype == np.float64 else 1e-6
