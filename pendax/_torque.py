@@ -20,10 +20,11 @@ def unfolded(tau: Callable, dtype: Any) -> Callable:
 
     **Raises:** `ValueError` where it isn't one real number as a function of one time.
     """
+    seen, rest = eqx.partition(tau, eqx.is_array)
     t = jnp.zeros((), dtype)
     try:
-        opened = eqx.filter_closure_convert(tau, t)
-        found = jax.eval_shape(opened, t)
+        opened = eqx.filter_closure_convert(lambda seen, t: eqx.combine(seen, rest)(t), seen, t)
+        found = jax.eval_shape(opened, seen, t)
     except jax.errors.JAXTypeError as error:
         raise ValueError(
             "Argument `tau` must be a function that JAX can trace: of jnp.sin, jnp.where and the "
@@ -37,9 +38,9 @@ def unfolded(tau: Callable, dtype: Any) -> Callable:
             )
     elif not isinstance(found, int | float):
         raise ValueError(f"Argument `tau` must return one real number, but got {found!r}.")
-    open_to_all = {id(x) for x in jax.tree.leaves(tau)}
-    hidden = (x for x in jax.tree.leaves(opened) if id(x) not in open_to_all)
-    return opened if any(isinstance(x, Tracer) for x in hidden) else tau
+    if not any(isinstance(x, Tracer) for x in jax.tree.leaves(opened)):
+        return tau
+    return eqx.Partial(opened, seen)  # whose function is a pytree as well
 
 
 class SampledTorque(eqx.Module):

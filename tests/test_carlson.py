@@ -107,6 +107,7 @@ def test_edges():
     assert elliprd(0.0, 0.0, 1.0) == inf
     assert elliprg(0.0, 0.0, 1.0) == 0.5
     assert elliprg(0.0, 0.0, 0.0) == 0
+    assert jax.grad(lambda p: elliprg(0.0, 0 * p, 0.0625 * p))(1.0) == 0.0625
     assert elliprg(1.0, inf, 1.0) == inf
     assert elliprj(0.0, 0.0, 1.0, 1.0) == inf
     assert elliprj(0.0, 0.0, 1.0, -1.0) == -inf

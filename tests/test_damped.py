@@ -145,8 +145,16 @@ def test_a_torque_with_a_parameter(kind, carried):
     value, first = jax.jit(jax.value_and_grad(last))(0.7)
     np.testing.assert_allclose([value, first], true[[0, 2]], rtol=1e-8)
     if not carried:
-        one = jnp.array([0.7])
-        np.testing.assert_allclose(jax.vmap(jax.jacfwd(last))(one), true[2:3], rtol=1e-8)
+        one = jnp.arange(1, 3)[0]  # a whole number moves nothing
+
+        def both(a):  # which is closed over and carried
+            half = lambda b, t: torque(0.5 * (a + b), t) * one.astype(float)  # noqa: E731
+            scene = Pendulum(1.0, 0.2, jax.tree_util.Partial(half, a))
+            return simulate(scene, 6.0, 0.3).theta
+
+        np.testing.assert_allclose(jax.grad(both)(0.7), true[2], rtol=1e-8)
+        lane = jnp.array([0.7])
+        np.testing.assert_allclose(jax.vmap(jax.jacfwd(last))(lane), true[2:3], rtol=1e-8)
 
 
 def test_torques_that_are_no_numbers():

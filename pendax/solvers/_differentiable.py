@@ -17,18 +17,18 @@ import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
-from ..taylor._columns import no_tangent, replaced, unit_tangents
+from ..taylor._columns import Parameters, moving_among, no_tangent, replaced, unit_tangents
 
 FloatArray = Float[Array, "..."]
 # y' = field(t, y, p) from y(0) = start(p); y a vector, p a list of arrays.
-Field = Callable[[FloatArray, FloatArray, list[FloatArray]], FloatArray]
-Start = Callable[[list[FloatArray]], FloatArray]
+Field = Callable[[FloatArray, FloatArray, Parameters], FloatArray]
+Start = Callable[[Parameters], FloatArray]
 # (field, start, p, ts) -> y at ts, and whatever else a solver says.
-Solve = Callable[[Field, Start, list[FloatArray], FloatArray], tuple[FloatArray, Any]]
+Solve = Callable[[Field, Start, Parameters, FloatArray], tuple[FloatArray, Any]]
 
 
 def differentiable(
-    solve: Solve, field: Field, start: Start, p: list[FloatArray], ts: Float[Array, " times"]
+    solve: Solve, field: Field, start: Start, p: Parameters, ts: Float[Array, " times"]
 ) -> tuple[FloatArray, Any]:
     """`solve(field, start, p, ts)`, to be differentiated in `p` and `ts`."""
 
@@ -40,7 +40,7 @@ def differentiable(
     def _(primals, tangents):
         p, ts = primals
         dp, dts = tangents
-        moving = [i for i, dx in enumerate(dp) if not isinstance(dx, SymbolicZero)]
+        moving = moving_among(p, dp)
         size = jax.eval_shape(start, p).size
         both, said = differentiable(solve, *_with_slopes(field, start, moving, size), p, ts)
         y, slopes = both[:, :size], both[:, size:].reshape(len(ts), -1, size)

@@ -64,7 +64,7 @@ def integrate(
     if split:
         (theta, v), said = solve(_split_terms(pendulum, t0), (theta0, v0), ts - t0, dt0)
     else:
-        leaves, rest = eqx.partition(pendulum, eqx.is_inexact_array)
+        leaves, rest = eqx.partition(pendulum, eqx.is_array)
         leaves, treedef = jax.tree.flatten(leaves)
 
         def field(t, y, p):

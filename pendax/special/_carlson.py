@@ -126,7 +126,8 @@ def _rg_jvp(primals, tangents):
     of_x = first - x / 12 * finite(rd(y, z, x))
     of_y = first - y / 12 * finite(rd(x, z, y))
     of_z = (0.5 * value * root_of_unit - x * of_x - y * of_y) / z
-    return value, root_of_unit * (of_x * dx + of_y * dy + of_z * dz)
+    of_x, of_y, of_z = (finite(root_of_unit * slope) for slope in (of_x, of_y, of_z))
+    return value, of_x * dx + of_y * dy + of_z * dz
 
 
 def _unit(x, y, z):

@@ -13,9 +13,9 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
-from jaxtyping import Array, Float
+from jaxtyping import Array, Shaped
 
-Parameters = list[Float[Array, "..."]]
+Parameters = list[Shaped[Array, "..."]]  # whole numbers never move
 
 
 def by_columns(
@@ -34,7 +34,7 @@ def by_columns(
     @partial(value.defjvp, symbolic_zeros=True)
     def _(primals, tangents):
         (p,), (dp,) = primals, tangents
-        moving = [i for i, dx in enumerate(dp) if not isinstance(dx, SymbolicZero)]
+        moving = moving_among(p, dp)
         if not moving:
             y, said = by_columns(f, p, careful)
             return (y, said), jax.tree.map(no_tangent, (y, said))
@@ -60,6 +60,15 @@ def _with_columns(f, moving: list[int], p: Parameters):
         return (y, dy), said
 
     return jax.vmap(along, out_axes=((None, -1), None))(unit_tangents(moving, p))
+
+
+def moving_among(p: Parameters, dp: list[Any]) -> list[int]:
+    """Which of them have tangents."""
+    return [
+        i
+        for i, (x, dx) in enumerate(zip(p, dp, strict=True))
+        if not isinstance(dx, SymbolicZero) and jnp.issubdtype(x.dtype, jnp.inexact)
+    ]
 
 
 def replaced(p: Parameters, moving: list[int], moved: Parameters) -> Parameters:
