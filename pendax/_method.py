@@ -239,11 +239,16 @@ def _is_entire(pendulum: Pendulum, dtype, span) -> bool:
         return False
     if _overdamped(pendulum):
         return False
+    growth = eqx.filter_eval_shape(_growth, pendulum.tau, dtype)
+    if growth is None or isinstance(growth, float):
+        return growth is not None
     if span is None or _hidden(*jax.tree.leaves(pendulum.tau)):
-        return eqx.filter_eval_shape(_growth, pendulum.tau, dtype) is not None
-    with jax.ensure_compile_time_eval():  # or a number would be hidden inside of `jit`
-        growth = _growth(pendulum.tau, dtype)
-    return growth is not None and bool(float(growth) * np.max(np.abs(span)) <= _LASTING)
+        return True
+    growth = _growth(pendulum.tau, dtype)
+    if _hidden(growth):
+        with jax.ensure_compile_time_eval():  # inside of `jit`; of many small programs
+            growth = _growth(pendulum.tau, dtype)
+    return bool(float(growth) * np.max(np.abs(span)) <= _LASTING)
 
 
 @eqx.filter_jit
