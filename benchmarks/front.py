@@ -16,9 +16,9 @@ from .timing import Timing, side_by_side
 EPS = 2.0**-52
 # Why heyoka may be faster.
 MACHINE_CODE = (
-    "machine code made for this equation, eight lanes at a time where there are enough, with every "
-    "coefficient computed once; XLA computes the series thrice, for the size of the step, for θ "
-    "and for v"
+    "machine code made for this equation, several lanes at a time where there are enough, with "
+    "every coefficient computed once; XLA computes the series thrice, for the size of the step, "
+    "for θ and for v"
 )
 ROUNDS, OF_CHEAP = 3, 9
 

@@ -26,9 +26,9 @@ KNOWN = 4
 NAMES = ("beta", "tau", "v0")
 PROBLEM = "gradient"
 WHY = {
-    (PROBLEM, "heyoka"): "machine code made for these equations, eight lanes at a time, with every "
-    "coefficient computed once; XLA computes the series again for the size of the step and for "
-    "each of its results"
+    (PROBLEM, "heyoka"): "machine code made for these equations, several lanes at a time, with "
+    "every coefficient computed once; XLA computes the series again for the size of the step and "
+    "for each of its results"
 }
 
 
