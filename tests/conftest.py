@@ -17,7 +17,7 @@ jax.config.update("jax_numpy_rank_promotion", "raise")
 
 # Tracing makes millions of objects that live on: a third of its time went into looking at them
 # again and again for cycles.
-gc.set_threshold(100_000, 50, 100)
+gc.set_threshold(50_000, 20, 20)
 
 ROOT = Path(__file__).parent.parent
 

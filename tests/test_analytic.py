@@ -296,7 +296,7 @@ def test_a_function_of_no_numbers():
     np.testing.assert_allclose(
         run.theta, simulate(Pendulum(1.0, 0.1, jnp.sin), 3.0, 0.5).theta, rtol=1e-14
     )
-    with pytest.raises(TypeError):
+    with pytest.raises(ValueError, match="one real number"):
         simulate(Pendulum(1.0, 0.1, lambda t: [jnp.sin(t)]), 3.0, 0.5)
 
 

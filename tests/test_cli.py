@@ -79,10 +79,11 @@ def test_npz_and_quiet(tmp_path, capsys):
     arguments = ["sweep", "--out", str(out), "--format", "npz", "--quiet", "--count", "5000"]
     assert main([*arguments, "--window", "1e-9", "1e-4", "--epsilon", "9.81"]) == 0
     assert capsys.readouterr().out == ""
-    table = np.load(out / "sweep.npz")
-    assert table["epsilon"] == 9.81
-    assert table["omega_rad_per_s"].size > 3000
-    np.testing.assert_allclose(table["omega_rad_per_s"][0], np.sqrt(9.81), rtol=1e-15)
+    with np.load(out / "sweep.npz") as table:
+        assert table["epsilon"] == 9.81
+        omega = table["omega_rad_per_s"]
+    assert omega.size > 3000
+    np.testing.assert_allclose(omega[0], np.sqrt(9.81), rtol=1e-15)
 
 
 ROWS = [f"{0.01 * i:.2f},{np.cos(0.06 * i):.5f}" for i in range(400)]

@@ -160,7 +160,8 @@ def test_an_unknown_name_says_which_are_near(tmp_path, capsys):
 def test_dark(tmp_path):
     assert main(["figures", "--only", "4", "--look", "dark", "--format", "png", "--out",
                  str(tmp_path), "--quiet"]) == 0  # fmt: skip
-    picture = np.asarray(Image.open(tmp_path / "figure-4.png").convert("L"))
+    with Image.open(tmp_path / "figure-4.png") as image:
+        picture = np.asarray(image.convert("L"))
     assert np.median(picture) < 40
     assert picture.max() > 200
 
