@@ -24,7 +24,7 @@ def elliprf(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> FloatArray:
     instead is a very large number (1e76 or more in size, of its sign), because inf times 0
     would spoil the derivatives in the other arguments; those are right.
 
-    Within 3 eps for arguments from 1e-300 to 1e300 (float32: 1e±36), derivatives 10.
+    Within 3.5 eps for arguments from 1e-300 to 1e300 (float32: 1e±36), derivatives 10.
     DLMF 19.16.1; by Carlson's duplication (19.36.1).
     """
     return widened(_rf)(*common(x=x, y=y, z=z))
@@ -53,7 +53,7 @@ def elliprd(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> FloatArray:
     **Returns:** RD: inf for z = 0 and for x = y = 0; 0 where one is inf; NaN (value and
     gradient) where one is negative.
 
-    Within 4 eps, domain and derivatives in an argument that is 0 as [`elliprf`][], where the
+    Within 4.5 eps, domain and derivatives in an argument that is 0 as [`elliprf`][], where the
     result is a float.  DLMF 19.16.5; by Carlson's duplication (19.36.2).
     """
     return widened(_rd)(*common(x=x, y=y, z=z))
@@ -67,7 +67,7 @@ def elliprg(x: ArrayLike, y: ArrayLike, z: ArrayLike) -> FloatArray:
     **Returns:** RG: √z / 2 where the others are 0; inf where one is inf; NaN (value and
     gradient) where one is negative.
 
-    Within 5 eps, domain as [`elliprf`][].  The derivative in one argument that is 0 is
+    Within 5.5 eps, domain as [`elliprf`][].  The derivative in one argument that is 0 is
     RF / 4; where two are 0, theirs are infinite, given as very large numbers.
     DLMF 19.16.3, 19.23.6; by 19.21.10 with the middle argument last, a sum of positive terms.
     """
