@@ -15,8 +15,8 @@ jax.config.update("jax_enable_x64", True)
 jax.config.update("jax_numpy_dtype_promotion", "strict")
 jax.config.update("jax_numpy_rank_promotion", "raise")
 
-# Tracing makes millions of objects that live on: a third of its time went into looking at them
-# again and again for cycles.
+# Tracing makes millions of objects that live on: up to a quarter of its time went into looking at
+# them again and again for cycles.
 gc.set_threshold(50_000, 20, 20)
 
 ROOT = Path(__file__).parent.parent

@@ -175,7 +175,10 @@ def test_overdamped():
         assert run.stats["steps"] < 500
 
 
-@pytest.mark.parametrize(("beta", "dry", "v0"), [(0.2, 0.8, 1.3), (0.0, 1.4, 0.5)])
+@pytest.mark.parametrize(
+    ("beta", "dry", "v0"),
+    [(0.2, 0.8, 1.3), (0.0, 1.4, 0.5), pytest.param(0.2, 0.3, 0.2, marks=pytest.mark.full)],
+)
 def test_recorded_torque(beta, dry, v0):
     """Stick and slip under lines between samples, with inertia and bias."""
     ts = np.linspace(1.3, 30.0, 20)

@@ -96,7 +96,7 @@ def moved_by(row, i):
     return [x * (1 + 2.0**-30) if i == j else x for j, x in enumerate(row)]
 
 
-@pytest.mark.parametrize("epsilon", [1.0, 9.81])
+@pytest.mark.parametrize("epsilon", [1.0, pytest.param(4.0, marks=pytest.mark.full), 9.81])
 def test_nowhere_nan(epsilon, dtype):
     """Equilibria, the separatrix and times beyond every exponential included."""
     x = [
