@@ -22,12 +22,13 @@ from .compared import error_loss
 EPS = 2.0**-52
 PROMISED = {  # by the docstrings
     "sn, cn, dn": 8,
-    **dict.fromkeys(("ellipk", "ellipe", "ellipkm1", "elliprf"), 3),
+    **dict.fromkeys(("ellipk", "ellipe", "ellipkm1"), 3),
     **dict.fromkeys(("ellipnome", "arcsn"), 8),
     **dict.fromkeys(("ellipkinc", "ellipeinc", "ellippi", "ellippiinc"), 10),
     "elliprc": 6,
-    "elliprd": 4,
-    "elliprg": 5,
+    "elliprf": 3.5,
+    "elliprd": 4.5,
+    "elliprg": 5.5,
     "elliprj": 20,
 }
 POLYNOMIAL = "Cephes: two polynomials and a logarithm; ours: the ladder, each rung of which rounds"

@@ -1,10 +1,10 @@
 """What runs on all cores: references, which take longest of all, and peers with threads."""
 
-import multiprocessing
 import os
 from collections.abc import Callable, Iterable
-from concurrent.futures import ThreadPoolExecutor
+from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from functools import cache
+from multiprocessing import get_context
 
 import numpy as np
 
@@ -12,12 +12,11 @@ COUNT = os.cpu_count() or 1
 
 
 def each(function: Callable, rows: Iterable[Iterable[float]], *, worth: int = 40) -> list:
-    """`function` of every row of floats; below `worth` rows here, as new processes take longer."""
+    """`function` of every row of floats; below `worth` rows here, as handing over takes longer."""
     rows = [tuple(map(float, row)) for row in rows]
     if len(rows) < worth:
         return list(map(function, rows))
-    with multiprocessing.get_context("spawn").Pool() as pool:
-        return pool.map(function, rows, chunksize=max(1, len(rows) // 50))
+    return list(_processes().map(function, rows, chunksize=max(1, len(rows) // 50)))
 
 
 def shared(work: Callable, workers: list, rows: np.ndarray) -> list:
@@ -32,3 +31,9 @@ def shared(work: Callable, workers: list, rows: np.ndarray) -> list:
 @cache
 def _threads() -> ThreadPoolExecutor:
     return ThreadPoolExecutor(COUNT)
+
+
+@cache
+def _processes() -> ProcessPoolExecutor:
+    # Not forked: JAX has threads.  Kept: they take seconds to begin.
+    return ProcessPoolExecutor(COUNT, get_context("spawn"))

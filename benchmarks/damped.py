@@ -1,6 +1,5 @@
 """Damped and driven scenes: error against run time, and random scenes against 30 digits."""
 
-import multiprocessing
 from functools import partial
 
 import damped_references as references
@@ -10,7 +9,7 @@ import numpy as np
 
 from pendax import Pendulum, Result, condition, simulate
 
-from . import front, results
+from . import cores, front, results
 from .problems import Problem
 from .timing import side_by_side
 
@@ -98,9 +97,7 @@ def _true(slopes, row):
 
 
 def true_rows(rows: np.ndarray, slopes=()) -> np.ndarray:
-    # Not forked: JAX has threads.
-    with multiprocessing.get_context("spawn").Pool(2) as pool:
-        return np.array(pool.map(partial(_true, slopes), [tuple(row) for row in rows], 8))
+    return np.array(cores.each(partial(_true, slopes), rows, worth=1))
 
 
 def random_scenes(seed: int, count: int):

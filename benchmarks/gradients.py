@@ -32,12 +32,13 @@ WHY = {
 }
 
 
+def _true(row) -> np.ndarray:
+    return references.trajectory(1.0, BETA, TAU, 0.0, *row, [T], NAMES)[0][2::2]
+
+
 def measure(seed: int, quick: bool) -> results.Tables:
     v0 = np.random.default_rng(seed).uniform(0.1, 4.0, 32 if quick else 256)
-    true = np.array([
-        references.trajectory(1.0, BETA, TAU, 0.0, float(x), [T], NAMES)[0][2::2]
-        for x in v0[:KNOWN]
-    ])  # fmt: skip
+    true = np.array(cores.each(_true, v0[:KNOWN, None], worth=1))
     size = 1 + np.abs(true)
     rows, best, lost = front.points(PROBLEM, methods(v0, quick), lambda dtype: true, 1e-13, size)
     titles = {PROBLEM: f"∂θ({T:g})/∂(β, τ, v0), β = {BETA}, τ = {TAU} ({len(v0)} lanes)"}

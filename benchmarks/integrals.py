@@ -34,7 +34,7 @@ def errors(name: str, columns: list[np.ndarray], got: np.ndarray) -> list[float]
     for value, *at in zip(got, *columns, strict=True):
         smallest = min(abs(x) for x in (*at, 1.0) if x != 0)
         bits = 600 + int(-3 * np.log2(smallest)) + int(3 * np.log2(max(map(abs, at)) + 1))
-        true = truth(REFERENCES[name], at, bits)
+        true = truth(REFERENCES[name], at, bits, order=1)
         if 1e-300 < abs(true.value) < 1e300:
             found.append(error(value, true.value, true.scale([arb(float(x)) for x in at])))
     return found

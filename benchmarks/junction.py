@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from pendax import FLUX_QUANTUM, JosephsonJunction, iv_curve, retrapping_torque
 
-from . import results
+from . import cores, results
 from .compared import Point, losses, once, seconds, spent
 from .peers import library
 from .timing import side_by_side
@@ -58,28 +58,37 @@ def of_beta_c(beta_c):
 def still(seed: int, scenes: int) -> tuple[str, float, float]:
     """Of the down branch from 0.1 % above Ir to 10 Ir, against a turn in Arb."""
     rng = np.random.default_rng(seed)
-    off = []
+    volts, rows = [], []
     for _ in range(scenes):
         beta_c = 10 ** rng.uniform(-1, 3)
         beta = beta_c**-0.5
         tau = float(retrapping_torque(beta)) * (1 + 10 ** rng.uniform(-3, 1))
-        volts = float(iv_curve(of_beta_c(beta_c), tau * IC).voltage_down)
-        true = IC * R * beta * float(fate_references.mean_velocity(beta, tau))
-        off.append(abs(volts / true - 1))
-    return "without a drive, relative", max(off), 1e-9
+        volts.append(float(iv_curve(of_beta_c(beta_c), tau * IC).voltage_down))
+        rows.append((beta, tau))
+    true = IC * R * np.array(cores.each(_voltage, rows, worth=10))
+    off = np.abs(volts / true - 1)
+    return "without a drive, relative", float(off.max()), 1e-9
+
+
+def _voltage(row) -> float:
+    beta, tau = row
+    return beta * float(fate_references.mean_velocity(beta, tau))
 
 
 def shapiro(seed: int, scenes: int) -> list[tuple[str, float, float]]:
     """Of first-order junctions: true error over the height of a step, and over the stated one."""
     rng = np.random.default_rng(seed)
-    share, off = [], []
+    curves, rows = [], []
     for _ in range(scenes):
         i0, i1, omega = rng.uniform(-3, 3), rng.uniform(0, 3), 10 ** rng.uniform(-0.6, 1.5)
         drive = i1 * IC, omega * IC * R / FLUX_QUANTUM
         curve = iv_curve(JosephsonJunction(IC, R), i0 * IC, drive=drive)
-        exact = i0 * IC / IC, drive[0] / IC, FLUX_QUANTUM * drive[1] / (IC * R)
-        step = FLUX_QUANTUM * drive[1]
-        true = float(references.rotation_number(*exact)) * step
+        rows.append((i0 * IC / IC, drive[0] / IC, FLUX_QUANTUM * drive[1] / (IC * R)))
+        curves.append((curve, FLUX_QUANTUM * drive[1]))
+    share, off = [], []
+    turning = cores.each(_turning, rows, worth=10)
+    for (curve, step), turns in zip(curves, turning, strict=True):
+        true = turns * step
         error = abs(float(curve.voltage_up) - true)
         off.append(error / step)
         share.append(error / (float(curve.error_up) + 4e-16 * abs(true) + 1e-30))
@@ -87,6 +96,10 @@ def shapiro(seed: int, scenes: int) -> list[tuple[str, float, float]]:
         ("under a drive, first order, over a step", max(off), 1e-6),
         ("under a drive, over the error that is stated", max(share), 1),
     ]
+
+
+def _turning(row) -> float:
+    return float(references.rotation_number(*row))
 
 
 def times(rounds: int, quick: bool):
@@ -141,7 +154,7 @@ def front(rounds: int, quick: bool) -> list[Point]:
     """Largest error and run time of the down branch at β_c = 10."""
     beta, count = 10**-0.5, 6 if quick else 50
     tau = np.linspace(1.01 * float(retrapping_torque(beta)), 2, count)
-    true = np.array([float(fate_references.mean_velocity(beta, x)) * beta for x in tau])
+    true = np.array(cores.each(_voltage, [(beta, x) for x in tau], worth=10))
     points = []
 
     def note(method, timing, found, setting=""):

@@ -1,6 +1,5 @@
 """Initial value problems with lanes of v0, and what their last angles truly are."""
 
-import multiprocessing
 import subprocess
 import tempfile
 from functools import partial
@@ -12,6 +11,8 @@ import numpy as np
 import pendulum_references
 
 from pendax import Pendulum
+
+from . import cores
 
 KNOWN = 4  # lanes whose errors are looked at, the first ones
 _DRIVER = Path(__file__).parent / "barely_damped.c"
@@ -56,12 +57,12 @@ class Problem:
                 self._known[dtype] = _barely_damped(beta, theta0, rows)
             else:
                 one = partial(_true, self.by, beta, tau, self.wave, theta0, t)
-                with multiprocessing.get_context("spawn").Pool(2) as pool:  # JAX has threads
-                    self._known[dtype] = np.array(pool.map(one, rows))
+                self._known[dtype] = np.array(cores.each(one, [[v0] for v0 in rows], worth=1))
         return self._known[dtype]
 
 
-def _true(by, beta, tau, wave, theta0, t, v0) -> float:
+def _true(by, beta, tau, wave, theta0, t, row) -> float:
+    (v0,) = row
     if by == "free":
         with flint.ctx.workprec(300):
             at = [flint.arb(x) for x in (1.0, t, v0, theta0)]

@@ -9,6 +9,7 @@ from jaxtyping import Array, ArrayLike, Float
 
 from ._arrays import common
 from ._pendulum import Pendulum
+from ._recorded import with_record
 from ._simulate import require_monotone, simulate
 
 
@@ -42,6 +43,8 @@ def condition(
     if ts.ndim > 1:
         raise ValueError(f"Argument `ts` must have one axis at most, but got shape {ts.shape}.")
     require_monotone(ts, t0)
+    start, *_ = common(v0=v0, theta0=theta0, t0=t0, epsilon=pendulum.epsilon)
+    pendulum = with_record(pendulum, jnp.result_type(ts, start))
     return _condition(pendulum, ts, v0, theta0, t0, options)
 
 

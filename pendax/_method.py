@@ -51,11 +51,6 @@ class TaylorSeries(Method):
         tau, clock = scene.tau, callable(scene.tau)
         if callable(tau) and not isinstance(tau, SampledTorque):
             tau = analytic(tau, times.dtype)
-            if tau is None:  # or there would be no torque
-                raise ValueError(
-                    "Argument `tau` must be the same function under `jit` as outside of it; "
-                    "solver=diffrax.Dopri8() takes any."
-                )
         terms = Scene(scene.epsilon, scene.beta, tau, scene.dry)
         start, elapsed = State(theta0, v0), times - t0
         most = budget(since(terms, t0), start, elapsed)

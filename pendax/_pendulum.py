@@ -43,6 +43,11 @@ class Pendulum(eqx.Module):
         tau: ArrayLike | Callable | None = None,
         dry: ArrayLike | None = None,
     ):
+        for name, x in (("epsilon", epsilon), ("beta", beta), ("dry", dry)):
+            if callable(x):
+                raise ValueError(
+                    f"Argument `{name}` must be a number: `tau` alone may be a function."
+                )
         require("epsilon", epsilon, "positive", lambda x: (x > 0) & np.isfinite(x))
         require("beta", beta, "zero or positive", lambda x: (x >= 0) & np.isfinite(x))
         require("dry", dry, "zero or positive", lambda x: (x >= 0) & np.isfinite(x))

@@ -13,8 +13,9 @@ from ._arrays import aligned, common, concrete, require, tolerance, whole, widen
 from ._method import choose
 from ._motion import motion
 from ._pendulum import Pendulum, require_free
+from ._recorded import with_record
 from ._results import Result, raise_if, where
-from ._torque import SampledTorque, unfolded
+from ._torque import SampledTorque
 
 
 class Trajectory(eqx.Module):
@@ -76,7 +77,9 @@ def simulate(
     **Arguments:**
 
     - `pendulum`: the scene, ε in 1/s², β in 1/s, τ in 1/s², a number or a function of t that JAX
-      can trace, and differentiate by what it closes over.
+      can trace, and differentiate by what it closes over.  A function is read at every call: what
+      it holds may have changed, and functions that read alike share a compiled program.  By the
+      time of a jump, `a` in `jnp.where(t > a, …)`, JAX's derivative is 0.
     - `ts`: times, s; for the closed form in any order and of either sign, else one axis,
       monotone away from `t0`.
     - `v0`, `theta0`: angular velocity, rad/s, and angle, rad, at `t0`, s.
@@ -198,11 +201,9 @@ def _integrated(pendulum, ts, v0, theta0, t0, solver, throw, options) -> Traject
     if dtype in (jnp.float16, jnp.bfloat16):
         raise ValueError(f"Arguments must be float32 or float64 for a solver, but got {dtype}.")
     require_monotone(ts, t0)
-    tau = pendulum.tau
-    if isinstance(tau, SampledTorque):
-        tau.require_within(ts, t0)
-    elif callable(tau):
-        pendulum = eqx.tree_at(lambda p: p.tau, pendulum, unfolded(tau, dtype))
+    if isinstance(pendulum.tau, SampledTorque):
+        pendulum.tau.require_within(ts, t0)
+    pendulum = with_record(pendulum, dtype)
     if options["dt0"] is not None:
         options["dt0"] = jnp.asarray(options["dt0"], dtype)
     shape = lanes["v0"].shape

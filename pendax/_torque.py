@@ -1,46 +1,11 @@
-"""Torques that depend on time: a function, and samples joined by straight lines."""
-
-from collections.abc import Callable
-from typing import Any
+"""A torque that was measured: samples joined by straight lines."""
 
 import equinox as eqx
-import jax
 import jax.numpy as jnp
 import numpy as np
-from jax.core import Tracer
 from jaxtyping import Array, ArrayLike, Float, Int
 
 from ._arrays import common, concrete, inexact, require
-
-
-def unfolded(tau: Callable, dtype: Any) -> Callable:
-    """`tau`; where it holds what is being traced in a closure, with that as leaves of a pytree.
-
-    Derivatives by what stays hidden would be lost, without a word, in programs of their own.
-
-    **Raises:** `ValueError` where it isn't one real number as a function of one time.
-    """
-    seen, rest = eqx.partition(tau, eqx.is_array)
-    t = jnp.zeros((), dtype)
-    try:
-        opened = eqx.filter_closure_convert(lambda seen, t: eqx.combine(seen, rest)(t), seen, t)
-        found = jax.eval_shape(opened, seen, t)
-    except jax.errors.JAXTypeError as error:
-        raise ValueError(
-            "Argument `tau` must be a function that JAX can trace: of jnp.sin, jnp.where and the "
-            "like, not of NumPy's or math's functions, nor of an `if` on t."
-        ) from error
-    if isinstance(found, jax.ShapeDtypeStruct):
-        if found.shape or jnp.issubdtype(found.dtype, jnp.complexfloating):
-            raise ValueError(
-                f"Argument `tau` must return one real number, but got {found.dtype} of shape "
-                f"{found.shape}. Lanes, each with a torque of its own, come through `jax.vmap`."
-            )
-    elif not isinstance(found, int | float):
-        raise ValueError(f"Argument `tau` must return one real number, but got {found!r}.")
-    if not any(isinstance(x, Tracer) for x in jax.tree.leaves(opened)):
-        return tau
-    return eqx.Partial(opened, seen)  # whose function is a pytree as well
 
 
 class SampledTorque(eqx.Module):

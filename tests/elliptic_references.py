@@ -26,9 +26,9 @@ class Truth(NamedTuple):
         return abs(self.slopes[i]) + over + self.scale(at) / (size if size > 1 else 1)
 
 
-def truth(function: Callable, at: list[float], bits: int) -> Truth:
+def truth(function: Callable, at: list[float], bits: int, order: int = 2) -> Truth:
     """`function` of balls at floats, by central differences good to 2^-160 of themselves; one
-    of an argument that is 0 has a step of 2^-80."""
+    of an argument that is 0 has a step of 2^-80.  Of `order` 1 there are no curvatures."""
     count = len(at)
     with flint.ctx.workprec(bits):
         x = [arb(float(t)) for t in at]
@@ -43,6 +43,8 @@ def truth(function: Callable, at: list[float], bits: int) -> Truth:
         value = function(*x)
         up, down = ([moved((i, sign)) for i in range(count)] for sign in (1, -1))
         slopes = [(up[i] - down[i]) / (2 * h[i]) for i in range(count)]
+        if order == 1:
+            return Truth(value, slopes, [])
         curvatures = [[arb(0)] * count for _ in range(count)]
         for i in range(count):
             curvatures[i][i] = (up[i] + down[i] - 2 * value) / h[i] ** 2

@@ -115,6 +115,17 @@ def test_edges():
     assert jnp.isnan(elliprj(1.0, 1.0, 1.0, 0.0))
 
 
+def test_the_largest_arguments(dtype):
+    """Whose sum is no float, though RG and its slopes are."""
+    most, one = jnp.finfo(dtype).max, jnp.ones((), dtype)
+    few = 4 * float(jnp.finfo(dtype).eps)
+    root = np.sqrt(float(most))
+    value, slopes = jax.value_and_grad(elliprg, (0, 1, 2))(most, most, most)
+    np.testing.assert_allclose(value / root, 1, rtol=few)
+    np.testing.assert_allclose(np.array(slopes) * root, 1 / 6, rtol=few)
+    np.testing.assert_allclose(elliprg(one, most, most) / root, np.pi / 4, rtol=few)
+
+
 def test_far_from_each_other(dtype):
     """Where one derivative is beyond the floats, the others are what they are."""
     cases = [

@@ -7,7 +7,6 @@ import jax
 import jax.numpy as jnp
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
 from pendax import Pendulum, Result, simulate
 
@@ -117,56 +116,6 @@ def test_constant_steps_that_are_traced():
     slope = jax.vmap(jax.grad(last), in_axes=(None, 0))(1.0, jnp.array([0.1, 0.2]))
     adaptive = jax.grad(lambda v0: simulate(Pendulum(1.0, 0.1), 2.0, v0).theta)(1.0)
     np.testing.assert_allclose(slope, adaptive, rtol=1e-8)
-
-
-TORQUES = {  # a τ(t) of each kind, by what it closes over, and its derivative by that
-    "kink": (lambda a, t: a * abs(t - 2.0), lambda a, t: abs(t - 2.0)),
-    "wave": (lambda a, t: jnp.cos(a * t), lambda a, t: -t * np.sin(a * t)),
-    "decay": (lambda a, t: a * jnp.exp(-a * t), lambda a, t: (1 - a * t) * np.exp(-a * t)),
-}
-
-
-@pytest.mark.parametrize("kind", TORQUES)
-@pytest.mark.parametrize("carried", [False, True])
-def test_a_torque_with_a_parameter(kind, carried):
-    """What a function closes over is seen, as what a `Partial` carries is."""
-    torque, slope = TORQUES[kind]
-
-    def last(a):
-        tau = jax.tree_util.Partial(torque, a) if carried else lambda t: torque(a, t)
-        return simulate(Pendulum(1.0, 0.2, tau), 6.0, 0.3).theta
-
-    def by_scipy(t, y):
-        bent = -0.2 * y[3] - np.cos(y[0]) * y[2] + slope(0.7, t)
-        return y[1], -0.2 * y[1] - np.sin(y[0]) + float(torque(0.7, t)), y[3], bent
-
-    options = {"method": "DOP853", "rtol": 1e-11, "atol": 1e-12, "max_step": 0.5}
-    true = solve_ivp(by_scipy, (0, 6.0), [0, 0.3, 0, 0], **options).y[:, -1]
-    value, first = jax.jit(jax.value_and_grad(last))(0.7)
-    np.testing.assert_allclose([value, first], true[[0, 2]], rtol=1e-8)
-    if not carried:
-        one = jnp.arange(1, 3)[0]  # a whole number moves nothing
-
-        def both(a):  # which is closed over and carried
-            half = lambda b, t: torque(0.5 * (a + b), t) * one.astype(float)  # noqa: E731
-            scene = Pendulum(1.0, 0.2, jax.tree_util.Partial(half, a))
-            return simulate(scene, 6.0, 0.3).theta
-
-        np.testing.assert_allclose(jax.grad(both)(0.7), true[2], rtol=1e-8)
-        lane = jnp.array([0.7])
-        np.testing.assert_allclose(jax.vmap(jax.jacfwd(last))(lane), true[2:3], rtol=1e-8)
-
-
-def test_torques_that_are_no_numbers():
-    for tau, what in (
-        (lambda t: jnp.array([1.0, 2.0]) * t, r"float64 of shape \(2,\). Lanes"),
-        (lambda t: jax.lax.complex(t, t), "one real number, but got complex128"),
-        (lambda t: None, "one real number, but got None"),
-        (np.sin, "that JAX can trace"),
-        (lambda t: 1.0 if t > 2 else 0.0, "that JAX can trace"),
-    ):
-        with pytest.raises(ValueError, match=what):
-            simulate(Pendulum(1.0, 0.2, tau), 6.0, 0.3)
 
 
 def test_terms_that_are_none_are_not_in_the_program():

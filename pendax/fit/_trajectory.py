@@ -10,6 +10,7 @@ from jaxtyping import Array, ArrayLike, Float
 from .._arrays import common, concrete, floating, whole
 from .._method import Method, TaylorSeries, choose
 from .._pendulum import Pendulum
+from .._recorded import with_record
 from .._torque import SampledTorque
 from ..taylor import Scene, State, budget, is_overdamped
 from ._fit import Fit
@@ -105,13 +106,14 @@ def fit_trajectory(
         terms, recording, {"v0": v0, "theta0": theta0, "offset": offset}, fixed
     )
     _require_enough(mask, recording, parameters)
+    scene = with_record(guess, recording.ts.dtype)
     search = Search(
         recording,
-        guess,
+        scene,
         held,
         parameters,
         _ends(recording, terms["epsilon"]),
-        _method(guess, recording, held | parameters.start),
+        _method(scene, recording, held | parameters.start),
         loss,
         optimiser,
         starts,

@@ -17,7 +17,14 @@ import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
-from ..taylor._columns import Parameters, moving_among, no_tangent, replaced, unit_tangents
+from ..taylor._columns import (
+    Parameters,
+    direction_of,
+    moving_among,
+    no_tangent,
+    replaced,
+    unit_tangents,
+)
 
 FloatArray = Float[Array, "..."]
 # y' = field(t, y, p) from y(0) = start(p); y a vector, p a list of arrays.
@@ -46,8 +53,7 @@ def differentiable(
         y, slopes = both[:, :size], both[:, size:].reshape(len(ts), -1, size)
         dy = jnp.zeros_like(y)
         if moving:
-            direction = jnp.concatenate([jnp.ravel(dp[i]) for i in moving])
-            dy = dy + jnp.einsum("tks,k->ts", slopes, direction)
+            dy = dy + jnp.einsum("tks,k->ts", slopes, direction_of(moving, p, dp))
         if not isinstance(dts, SymbolicZero):
             along = jax.vmap(lambda t, y: field(t, y, p))(ts, y)
             dy = dy + along * dts[:, None]

@@ -1,6 +1,6 @@
 """Carlson's symmetric integrals of the first and second kind."""
 
-from functools import partial
+from functools import partial, reduce
 
 import jax
 import jax.numpy as jnp
@@ -151,9 +151,9 @@ def _rg_value(count, x, y, z):
     rest = jnp.sqrt(x) * (jnp.sqrt(z) / jnp.sqrt(y))
     value = rest + sum_of_steps(count, x, z, y, y, 1 / 3 * (y - x) * (z - y))
     value = jnp.where(flat, jnp.sqrt(z), value) * (0.5 / root_of_unit)
-    endless = jnp.isinf(arguments[0] + arguments[1] + arguments[2])
-    value = jnp.where(endless, jnp.inf, value)
-    none_below = jnp.minimum(arguments[0], jnp.minimum(arguments[1], arguments[2])) >= 0
+    least, largest = (reduce(pick, arguments) for pick in (jnp.minimum, jnp.maximum))
+    value = jnp.where(jnp.isinf(largest), jnp.inf, value)  # their sum may be without any being so
+    none_below = least >= 0
     return jnp.where(none_below, value, jnp.nan)
 
 

@@ -13,7 +13,7 @@ from typing import Any
 import jax
 import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
-from jaxtyping import Array, Shaped
+from jaxtyping import Array, Float, Shaped
 
 Parameters = list[Shaped[Array, "..."]]  # whole numbers never move
 
@@ -39,7 +39,7 @@ def by_columns(
             y, said = by_columns(f, p, careful)
             return (y, said), jax.tree.map(no_tangent, (y, said))
         (y, columns), said = by_columns(partial(_with_columns, exact, moving), p)
-        direction = jnp.concatenate([jnp.ravel(dp[i]) for i in moving])
+        direction = direction_of(moving, p, dp)
         dy = jax.tree.map(lambda column: column @ direction, columns)
         return (y, said), (dy, jax.tree.map(no_tangent, said))
 
@@ -78,11 +78,22 @@ def replaced(p: Parameters, moving: list[int], moved: Parameters) -> Parameters:
 
 
 def unit_tangents(moving: list[int], p: Parameters) -> Parameters:
-    """Tangents of the `moving` arrays in each direction of their elements, stacked."""
+    """Tangents of the `moving` arrays in each direction of their elements, stacked.
+
+    What a torque holds may be of another precision.
+    """
     sizes = [p[i].size for i in moving]
     ends = [sum(sizes[: k + 1]) for k in range(len(sizes) - 1)]
     units = jnp.split(jnp.eye(sum(sizes), dtype=p[0].dtype), ends, axis=1)
-    return [unit.reshape(-1, *p[i].shape) for i, unit in zip(moving, units, strict=True)]
+    return [
+        unit.reshape(-1, *p[i].shape).astype(p[i].dtype)
+        for i, unit in zip(moving, units, strict=True)
+    ]
+
+
+def direction_of(moving: list[int], p: Parameters, dp: list[Any]) -> Float[Array, " directions"]:
+    """`dp` in terms of the unit tangents."""
+    return jnp.concatenate([jnp.ravel(dp[i]).astype(p[0].dtype) for i in moving])
 
 
 def no_tangent(x):
