@@ -78,7 +78,9 @@ def simulate(
 
     - `pendulum`: the scene, ε in 1/s², β in 1/s, τ in 1/s², a number or a function of t that JAX
       can trace, and differentiate by what it closes over.  A function is read at every call: what
-      it holds may have changed, and functions that read alike share a compiled program.  By the
+      it holds may have changed, and functions that read alike share a compiled program, which a
+      Python number is part of: `jnp.asarray` makes one that may change without compiling anew.
+      (A `jax.jit` of your own inside goes on with what it was compiled for.)  By the
       time of a jump, `a` in `jnp.where(t > a, …)`, JAX's derivative is 0.
     - `ts`: times, s; for the closed form in any order and of either sign, else one axis,
       monotone away from `t0`.

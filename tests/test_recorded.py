@@ -153,6 +153,13 @@ def test_functions_that_read_alike_share_a_program():
     assert alike(wave(0.5), wave(0.5))
     assert alike(wave(0.5), lambda t: 0.0 + 0.5 * jnp.cos(0.7 * t))
     assert alike(wave(jnp.array([0.5])[0]), wave(jnp.array([0.5])[0]))
+    for function in (
+        jnp.mod,
+        jnp.hypot,
+        lambda t, a: jnp.interp(a, jnp.arange(2.0), t * jnp.ones(2)),
+    ):
+        one, other = (lambda t, f=function: f(t, jnp.asarray(0.5)) for _ in range(2))
+        assert alike(one, other)
     twice = lambda t: held_fixed(t) * 0.5  # noqa: E731
     assert alike(twice, twice)  # with a rule that JAX doesn't show
     assert recorded(wave(0.5), jnp.float64)(jnp.asarray(2.0)) == wave(0.5)(2.0)
@@ -179,6 +186,58 @@ def test_functions_that_read_differently_do_not():
     one, other = (recorded(lambda t, x=x: jnp.interp(t, tables[0], x), float) for x in tables)
     assert (one(jnp.asarray(2.5)), other(jnp.asarray(2.5))) == (2.5, 6.5)
     assert recorded(wave(half), jnp.float32).operations != recorded(wave(half), float).operations
+
+
+def test_what_jax_does_not_show():
+    """Rules of derivatives and calls of Python: by their function and the numbers that it holds."""
+    held = [1.0]
+
+    @jax.custom_jvp
+    def scaled(x):
+        return x
+
+    @scaled.defjvp
+    def _(primals, tangents):
+        return primals[0], held[0] * tangents[0]
+
+    def by_python(t):
+        factor = held[0]
+        shape = jax.ShapeDtypeStruct((), t.dtype)
+        return jax.pure_callback(lambda t: factor * t, shape, t, vmap_method="sequential")
+
+    for tau in (scaled, by_python, jax.jit(scaled)):
+        held[0] = 1.0
+        before, again = (recorded(tau, jnp.float64).operations for _ in range(2))
+        assert before == again
+        held[0] = 2.0
+        assert recorded(tau, jnp.float64).operations != before
+
+
+def test_what_no_equality_is_made_for():
+    """A key, a context, an object that can't be hashed: neither an error nor an old answer."""
+    keys = jax.random.key(1), jax.random.key(2)
+    one, other = (jax.jit(lambda t, key=key: t * jax.random.normal(key)) for key in keys)
+    assert alike(one, one)
+    assert not alike(one, other)
+
+    def random(t, parted):
+        with jax.threefry_partitionable(parted):
+            return t * jax.random.normal(jax.random.PRNGKey(3), (5,))[1]
+
+    assert not alike(lambda t: random(t, True), lambda t: random(t, False))
+
+    class Answers:
+        __hash__ = None
+
+        def __eq__(self, other):
+            return np.ones(2) == np.zeros(2)
+
+        def __call__(self, t):
+            return jax.nn.relu(t)
+
+    tau = jax.tree_util.Partial(lambda answers, t: answers(t), Answers())
+    assert alike(tau, tau)
+    assert not alike(tau, jax.tree_util.Partial(tau.func, Answers()))
 
 
 def by_parts(x, t):
