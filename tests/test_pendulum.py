@@ -17,10 +17,6 @@ from pendax import Pendulum, energy, frequency, simulate
         ({"epsilon": np.array([1.0, -2.0])}, "Argument `epsilon` must be positive, but got -2.0."),
         ({"epsilon": np.inf}, "Argument `epsilon` must be positive, but got inf."),
         ({"beta": -0.1}, "Argument `beta` must be zero or positive, but got -0.1."),
-        (
-            {"beta": lambda t: 0.1},
-            "Argument `beta` must be a number: `tau` alone may be a function",
-        ),
     ],
 )
 def test_bad_values(arguments, message):
