@@ -12,7 +12,7 @@ from jax.core import Tracer
 from jax.extend.core import ClosedJaxpr, Jaxpr, Literal
 from jax.sharding import Mesh
 
-_NUMBER = (np.ndarray, np.generic, jax.Array, bool, int, float, complex)
+from ._arrays import NUMBERS
 
 
 class Operations:
@@ -94,7 +94,7 @@ def _setting(value: Any, function: _Same) -> Any:
         return tuple((name, _setting(value[name], function)) for name in sorted(value))
     if isinstance(value, Tracer):
         return _Same(value)
-    if isinstance(value, np.ndarray | jax.Array):
+    if isinstance(value, NUMBERS):
         return _bits(value)
     # A mesh may be called as well, to decorate.
     if not isinstance(value, Mesh) and (callable(value) or hasattr(value, "call_wrapped")):
@@ -105,13 +105,15 @@ def _setting(value: Any, function: _Same) -> Any:
 def _bits(value: Any) -> Any:
     if isinstance(value, jax.Array) and jnp.issubdtype(value.dtype, jax.dtypes.prng_key):
         return value.dtype, _bits(jax.random.key_data(value))
+    if isinstance(value, int | float | complex):  # Python's, whole ones of any length
+        return type(value), repr(value)
     x = np.asarray(value)
     return x.dtype, x.shape, x.tobytes()  # 0.0 and −0.0 are equal, and not the same
 
 
 def _held(value: Any, seen: set[int]) -> Iterator[Any]:
     """Numbers that a function has in closures, defaults, globals of its own and its object."""
-    if isinstance(value, _NUMBER):
+    if isinstance(value, NUMBERS):
         if not isinstance(value, Tracer):
             yield _bits(value)
         return
@@ -130,7 +132,7 @@ def _held(value: Any, seen: set[int]) -> Iterator[Any]:
     elif isinstance(value, FunctionType):
         cells = (cell.cell_contents for cell in value.__closure__ or () if not _is_empty(cell))
         known = (value.__globals__.get(name) for name in value.__code__.co_names)
-        read = [x for x in known if isinstance(x, (*_NUMBER, list, tuple, dict))]
+        read = [x for x in known if isinstance(x, (*NUMBERS, list, tuple, dict))]
         parts = [*cells, value.__defaults__, value.__kwdefaults__, *read]
     elif hasattr(value, "call_wrapped"):
         parts = [value.f]

@@ -12,11 +12,11 @@ from typing import Any
 import equinox as eqx
 import jax
 import jax.numpy as jnp
-import numpy as np
 from jax import lax
 from jax.extend.core import ClosedJaxpr, jaxpr_as_fun
 from jaxtyping import Array, Float, Shaped
 
+from ._arrays import NUMBERS
 from ._pendulum import Pendulum
 from ._reading import Operations
 from ._torque import SampledTorque
@@ -78,7 +78,7 @@ def recorded(tau: Callable, dtype: Any) -> Recorded:
 
 
 def _number(found: Any, dtype: Any) -> Array:
-    if not isinstance(found, jax.Array | np.ndarray | np.generic | bool | int | float | complex):
+    if not isinstance(found, NUMBERS):
         raise ValueError(f"Argument `tau` must return one real number, but got {_named(found)}.")
     found = jnp.asarray(found)
     if found.shape:
