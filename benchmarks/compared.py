@@ -53,7 +53,7 @@ def losses(points: Iterable[Point], why: dict[str, str]) -> list[results.Row]:
     # float32's errors are of another eps.
     points = [x for x in points if x.error is not None and "float32" not in x.method]
     for peer in points:
-        rivals = [x for x in points if x.ours and x.work == peer.work]
+        rivals = [x for x in points if results.as_it_comes(x.method) and x.work == peer.work]
         if peer.ours or any(_ahead(x, peer) for x in rivals):
             continue
         for ours in rivals:

@@ -76,12 +76,13 @@ def _floor(problem, true) -> float:
     return 2 * EPS * float(np.max(np.abs(true) + problem.t * np.abs(last)))
 
 
-def _ours(rows, floor: float, error: float) -> list[int]:
+def _ours(rows, floor: float, error: float, wide=False) -> list[int]:
     """Our points that are as exact, errors below `floor` being equal, and such as differ by a
-    tenth.  float32's are of other scenes, whose numbers are rounded."""
+    tenth; or those with wide vectors.  float32's are of other scenes, whose numbers are rounded."""
     most = max(1.1 * error, floor)
-    mine = (i for i, row in enumerate(rows) if row["method"].startswith("pendax"))
-    return [i for i in mine if "float32" not in rows[i]["method"] and rows[i]["error"] <= most]
+    names = (row["method"] for row in rows)
+    mine = (results.WIDE in name if wide else results.as_it_comes(name) for name in names)
+    return [i for i, is_ours in enumerate(mine) if is_ours and rows[i]["error"] <= most]
 
 
 def losses(rows, timings: list[Timing], floor: float) -> list[results.Row]:
@@ -106,12 +107,16 @@ def losses(rows, timings: list[Timing], floor: float) -> list[results.Row]:
         if alone:
             i = min(alone, key=lambda i: rows[i]["error"])
             lost.append({**common, "setting": rows[i]["setting"], "error": rows[i]["error"],
-                         "ratio": None, "from": None, "to": None, "at": len(alone),
-                         "settings": len(points), "ours": "no setting as exact"})  # fmt: skip
+                         "ratio": None, "from": None, "to": None, results.WIDE: None,
+                         "at": len(alone), "settings": len(points),
+                         "ours": "no setting as exact"})  # fmt: skip
         if faster:
             _, i, ours, ratio = min(faster)
+            wide = _ours(rows, floor, rows[i]["error"], wide=True)
+            of_wide = min(wide, key=lambda j: timings[j].median, default=None)
+            left = None if of_wide is None else timings[i].over(timings[of_wide])["ratio"]
             lost.append({**common, "setting": rows[i]["setting"], "error": rows[i]["error"],
-                         **ratio, "at": len(faster), "settings": len(points),
+                         **ratio, results.WIDE: left, "at": len(faster), "settings": len(points),
                          "ours": rows[ours]["setting"]})  # fmt: skip
     return lost
 

@@ -59,6 +59,13 @@ def methods(v0: np.ndarray, quick: bool) -> Iterator[Method]:
         for rtol in rtols if quick else OURS:
             run = jax.jit(jax.vmap(_gradient(mode, partial(_ours, rtol))))
             yield Method(f"pendax, {name}", f"rtol = {rtol:.0e}", partial(run, lanes), len(v0))
+    if (wide := cores.widest()) and not quick:
+        for rtol in OURS[1::2]:
+            run = jax.jit(
+                jax.vmap(_gradient(jax.grad, partial(_ours, rtol))), compiler_options=wide
+            )
+            name = f"pendax, reverse, {results.WIDE}"
+            yield Method(name, f"rtol = {rtol:.0e}", partial(run, lanes), len(v0))
     adjoints = {
         "checkpoints": (jax.grad, dfx.RecursiveCheckpointAdjoint()),
         "backsolve": (jax.grad, dfx.BacksolveAdjoint()),

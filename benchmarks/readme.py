@@ -53,8 +53,10 @@ def accuracy(tables: Tables) -> str:
 
 def special(tables: Tables) -> str:
     title, rows = next(iter(tables.items()))
+    works = _groups(rows, "work")
+    few = [row for row in _table(tables, "ellipj by region") if row["region"] == "random"]
     lines = []
-    for work, here in _groups(rows, "work").items():
+    for work, here in {"ellipj": works["ellipj"], "ellipj, 65,536 elements": few, **works}.items():
         mine, peers = _parted(here, "library")
         lines.append({
             "work": work,
@@ -106,7 +108,8 @@ def front(name: str, tables: Tables, unit: str = "in rad") -> str:
     points = _groups(_table(tables, "error against run time"), "problem")
     for problem, here in _groups(tables["at each peer's least error"], "problem").items():
         mine, _ = _parted(points[problem], "method")
-        ours = _fastest_of_exact([x for x in mine if "float32" not in x["method"]], "error")
+        mine = [row for row in mine if results.as_it_comes(row["method"])]
+        ours = _fastest_of_exact(mine, "error")
         line: Row = {
             "problem": problem,
             "pendax": f"{ours['error']:.2g} in {shown(ours['µs'])} µs",
@@ -145,12 +148,14 @@ def _library(peer: str) -> str:
 
 
 def sweeps(tables: Tables) -> str:
-    lines = []
-    for (scene, lanes), here in _groups(_table(tables, "sweeps"), "scene", "lanes").items():
+    lines, rows = [], _table(tables, "sweeps")
+    every = ("pendax", f"pendax, {results.WIDE}", "diffrax", "heyoka", "SciPy")
+    names = [name for name in every if any(row["by"] == name for row in rows)]
+    for (scene, lanes), here in _groups(rows, "scene", "lanes").items():
         line: Row = {"scene": scene, "lanes": lanes}
         by = {row["by"]: row for row in here}
         line |= {f"{name}, µs a lane": by[name]["µs"] if name in by else None
-                 for name in ("pendax", "diffrax", "heyoka", "SciPy")}  # fmt: skip
+                 for name in names}  # fmt: skip
         line["compiling, s: pendax, diffrax"] = ", ".join(
             shown(by[name]["compiling, s"]) for name in ("pendax", "diffrax")
         )
@@ -265,7 +270,7 @@ def _parted(rows: Iterable[Row], key: str) -> tuple[list[Row], list[Row]]:
 def _cell(row: Row, ours: str, time: str, unit: str) -> str:
     name = str(row["library"]).removeprefix(ours).strip()
     error = "" if row["error"] is None else f", {shown(row['error'])} {unit}"
-    return f"{name} {shown(row[time])} {time}{error}".strip()
+    return f"{name} {shown(row[time])} {time}{error}".strip(", ")
 
 
 def _figure(name: str) -> str:

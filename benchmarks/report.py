@@ -101,9 +101,14 @@ def _loss(row: Row) -> str:
     if row["ratio"] is None:
         return f"{where}: {peer} reaches errors that we do not, {row['error']:.1g} ({settings})"
     return (
-        f"{where}: {peer} is faster {settings}, with {_range(row)} of our time at "
+        f"{where}: {peer} is faster {settings}, with {_range(row)} of our time{_wide(row)} at "
         f"an error of {row['error']:.1g}"
     )
+
+
+def _wide(row: Row) -> str:
+    left = row.get(results.WIDE)
+    return "" if left is None else f" ({left:.2g} with vectors of {results.WIDE})"
 
 
 def _range(row: Row) -> str:

@@ -10,11 +10,18 @@ FOLDER = Path(__file__).parent / "results"
 SEED = 1  # of what is kept
 _PACKAGES = ("pendax", "jax", "jaxlib", "diffrax", "equinox", "numpy", "scipy", "heyoka")
 _TIMES = ("ns", "µs", "ms", "s")  # columns of medians; "spread" beside them is relative
-_SPREADS = ("spread", "from", "to", "at")  # "at" so many settings a peer is faster
+WIDE = "512 bits"  # vectors that XLA is told to use: `cores.widest`
+# "at" so many settings a peer is faster, and how much of a lead remains beside wide vectors.
+_SPREADS = ("spread", "from", "to", "at", WIDE)
 _GENERATION = {"family": "cpu family", "model": "model"}  # as /proc/cpuinfo has them on x86
 _ASSUMED = 0.5  # spread of a time that has none beside it
 Row = dict[str, str | float | int | bool | None]
 Tables = dict[str, list[Row]]
+
+
+def as_it_comes(method: str) -> bool:
+    """Whether it is pendax, in float64, with no options for XLA: what peers are compared with."""
+    return method.startswith("pendax") and "float32" not in method and WIDE not in method
 
 
 def bar(

@@ -1,5 +1,6 @@
 """Error against run time of the elliptic functions, and the bars they are held to."""
 
+from collections.abc import Callable
 from functools import partial
 
 import jax
@@ -9,7 +10,7 @@ import scipy.special
 
 from pendax import special
 
-from . import integrals, results, special_regions
+from . import cores, integrals, results, special_regions
 from .accuracy import EPS, complete_errors, jacobi_error
 from .compared import Point, an_element, losses, seconds, spent
 from .peers import compiled, library
@@ -78,6 +79,7 @@ def jacobi(u, m, rounds) -> list[Point]:
     calls = {
         "pendax": partial(ours, *on_device),
         "pendax float32": partial(ours, *narrow),
+        **wide(special.ellipj, on_device),
         "SciPy": partial(scipy.special.ellipj, u, m),
         "jnp.sin, jnp.cos": partial(sines, on_device[0]),
         **compiled("ellipj", [u, m]),
@@ -106,6 +108,14 @@ def jacobi(u, m, rounds) -> list[Point]:
     return points
 
 
+def wide(function, arguments) -> dict[str, Callable]:
+    """The call with vectors of 512 bits, where there are any."""
+    if not (options := cores.widest()):
+        return {}
+    program = jax.jit(function, compiler_options=options)
+    return {f"pendax, {results.WIDE}": partial(program, *arguments)}
+
+
 def shared_parameter(u, rounds) -> list[Point]:
     m = 0.7
     calls = {
@@ -124,6 +134,7 @@ def complete(m, rounds) -> list[Point]:
     on_device = jnp.asarray(m)
     calls = {
         "pendax": partial(jax.jit(special.ellipk), on_device),
+        **wide(special.ellipk, (on_device,)),
         "SciPy": partial(scipy.special.ellipk, m),
         **compiled("ellipk", [m]),
     }

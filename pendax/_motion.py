@@ -23,7 +23,7 @@ from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
 from ._gap import gap_of, half_angle, turned_by
-from .special._cpu import in_blocks
+from .special._cpu import DOZENS, in_blocks
 from .special._elementary import angle
 from .special._jacobi import Functions, functions, jacobi_and_slopes, slopes_at
 
@@ -149,7 +149,7 @@ def _values(epsilon, t, v0, theta0):
 
 def _values_and_columns(count):
     @jax.jit
-    @in_blocks
+    @partial(in_blocks, most=DOZENS)
     def values(epsilon, t, v0, theta0):
         start = _start(epsilon, v0, theta0)
         argument = start.root * t, start.m, start.m1

@@ -133,7 +133,7 @@ def test_nothing_to_compare_with(content, said, tmp_path, monkeypatch, capsys):
 
 def test_losses():
     """Of each peer the smallest error that we don't reach, and where it is fastest; float32 does
-    not count as ours, and errors below the floor are equal."""
+    not count as ours, nor wide vectors, and errors below the floor are equal."""
 
     def row(method, error):
         return {"problem": "p", "method": method, "setting": "", "error": error, "µs": 1.0,
@@ -149,6 +149,12 @@ def test_losses():
     assert [x["at"] for x in front.losses(rows, times, 1e-11)] == [3]
     assert [x["pendax, µs"] for x in front.best(rows, 1e-11)] == [1.0, 1.0]
     assert [x["pendax, µs"] for x in front.best(rows, 1e-15)] == [None, None]
+    rows, times = [*rows, row("pendax, 512 bits", 1e-7)], [*times, Timing((1.0,))]
+    with_wide = front.losses(rows, times, 1e-15)
+    assert [x["512 bits"] for x in with_wide] == [None, 0.5, None]
+    assert "0.25 (0.11 to 0.56) of our time (0.5 with vectors of 512 bits)" in (
+        report.losses({"losses": [{**with_wide[1], "why": ""}]})
+    )
 
 
 def test_markdown():

@@ -15,6 +15,7 @@ from elliptic_references import error, legendre, truth
 from flint import arb
 
 from pendax.special import (
+    _cpu,
     arcsn,
     ellipeinc,
     ellipj,
@@ -22,6 +23,7 @@ from pendax.special import (
     ellipkm1,
     ellippi,
     ellippiinc,
+    elliprj,
 )
 
 
@@ -214,3 +216,12 @@ def test_large_arrays_go_in_blocks():
     phi, m = rng.uniform(-9, 9, 600_001), rng.uniform(-1, 1, 600_001)
     np.testing.assert_allclose(ellipkinc(phi, m), scipy.special.ellipkinc(phi, m), rtol=2e-14)
     np.testing.assert_allclose(ellipeinc(phi, m), scipy.special.ellipeinc(phi, m), rtol=2e-14)
+
+
+def test_blocks_of_the_third_kind_are_the_whole():
+    """One element short of two blocks, two, and past the last whole one."""
+    rng = np.random.default_rng(18)
+    for size in (2 * _cpu.DOZENS - 1, 2 * _cpu.DOZENS, 2 * _cpu.DOZENS + 77):
+        arguments = rng.uniform(0.1, 9, (4, size))
+        exact = scipy.special.elliprj(*arguments)
+        np.testing.assert_allclose(elliprj(*arguments), exact, rtol=3e-15)

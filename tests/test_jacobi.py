@@ -271,7 +271,7 @@ def test_blocks_are_the_whole():
     from pendax.special import _cpu
 
     rng = np.random.default_rng(12)
-    for size in (2 * _cpu._BLOCK - 1, 2 * _cpu._BLOCK, 2 * _cpu._BLOCK + 1000):
+    for size in (2 * _cpu._FEW - 1, 2 * _cpu._FEW, 2 * _cpu._FEW + 1000):
         u, m = rng.uniform(-9, 9, size), rng.uniform(-3, 3, size)
         for parameter in (m, m[:1]):
             whole = jnp.stack(ellipj(u, parameter))

@@ -12,6 +12,7 @@ from pendulum_references import ARGUMENTS, magnitude, units
 from starts import TAGS, starts
 
 from pendax import Pendulum, simulate
+from pendax.special import _cpu
 
 SIZE = 12
 
@@ -108,3 +109,15 @@ def test_nowhere_nan(epsilon, dtype):
     x = jnp.asarray(x, dtype)
     for mode in (None, jax.jacfwd, jax.jacrev, jax.hessian):
         assert jnp.isfinite(compiled(mode)(x)).all(), mode
+
+
+def test_gradients_in_blocks_are_the_whole(dtype):
+    """Of so many pendulums that the CPU works through blocks of them, the last overlapping."""
+    rng = np.random.default_rng(5)
+    size = 2 * _cpu.DOZENS + 77
+    rows = rng.uniform((0.5, 0.0, 0.1, -1.0), (2.0, 20.0, 1.9, 1.0), (size, 4)).astype(dtype)
+    some = np.r_[0:50, _cpu.DOZENS - 50 : _cpu.DOZENS + 50, size - 100 : size]
+
+    few, all_ = (np.asarray(compiled(jax.jacrev)(jnp.asarray(x))) for x in (rows[some], rows))
+    off = np.abs(all_[some] - few) / (1 + np.abs(few))
+    assert off.max() < 1e4 * np.finfo(dtype).eps

@@ -8,7 +8,9 @@ import jax.numpy as jnp
 from jax import lax
 
 _SMALL = 64  # elements; below, a stage of its own costs more than it saves
-_BLOCK = 262144  # elements; temporary arrays stay in the cache, and every core gets work
+# Elements of a block.  Temporary arrays of larger ones leave the cache, and the system hands out
+# memory for them anew in each call; smaller ones leave cores without work.
+_FEW, DOZENS = 262144, 65536  # for functions with so many temporary arrays
 
 
 def once(function: Callable, *arguments: Any) -> Any:
@@ -53,8 +55,9 @@ def where_needed(needed: Any, function: Callable, *arguments: Any) -> Any:
     return lax.cond(jnp.any(needed), function, zeros, *arguments)
 
 
-def in_blocks(function: Callable) -> Callable:
-    """`function`, elementwise from arrays of one rank to a tuple of arrays, in blocks.
+def in_blocks(function: Callable, most: int = _FEW) -> Callable:
+    """`function`, elementwise from arrays of one rank to a tuple of arrays, in blocks of at
+    `most` so many elements where there are two of them or more.
 
     Whole arrays would pass through main memory some thirty times.
     Not to be differentiated; a mapped axis becomes one more axis of the arrays.
@@ -74,20 +77,20 @@ def in_blocks(function: Callable) -> Callable:
         shape = jnp.broadcast_shapes(*(x.shape for x in arrays))
         results = jax.eval_shape(function, *arrays)
         size = results[0].size
-        if size < 2 * _BLOCK or any(x.shape != shape and x.size != 1 for x in arrays):
+        if size < 2 * most or any(x.shape != shape and x.size != 1 for x in arrays):
             return function(*arrays)
         flat = [x.reshape(-1) for x in arrays]
 
         def block(i, totals):
-            start = jnp.minimum(i * _BLOCK, size - _BLOCK)  # the last two may overlap
-            parts = [x if x.size == 1 else lax.dynamic_slice_in_dim(x, start, _BLOCK) for x in flat]
+            start = jnp.minimum(i * most, size - most)  # the last two may overlap
+            parts = [x if x.size == 1 else lax.dynamic_slice_in_dim(x, start, most) for x in flat]
             return tuple(
                 lax.dynamic_update_slice_in_dim(total, part, start, 0)
                 for total, part in zip(totals, function(*parts), strict=True)
             )
 
         totals = tuple(jnp.empty(size, x.dtype) for x in results)
-        totals = lax.fori_loop(0, -(-size // _BLOCK), block, totals)
+        totals = lax.fori_loop(0, -(-size // most), block, totals)
         return tuple(x.reshape(shape) for x in totals)
 
     return call

@@ -18,7 +18,7 @@ from jax import lax
 from jax.custom_derivatives import SymbolicZero
 from jaxtyping import Array, Float
 
-from ._cpu import in_blocks
+from ._cpu import DOZENS, in_blocks
 from ._elementary import rc_any, rc_middle, rc_near, reciprocal
 from ._slope import LARGEST
 
@@ -76,7 +76,7 @@ def kernel(steps: Callable, long: Callable, three: Callable = lambda *x: x[:3]) 
         branches = (lambda *x: (long(all_, *x),)), (lambda *x: (steps(few, *x),))
         return lax.cond(far, *branches, *arguments)
 
-    fast = jax.jit(in_blocks(value))
+    fast = jax.jit(in_blocks(value, DOZENS))
     return lambda *arguments: fast(*jnp.broadcast_arrays(*arguments))[0]
 
 

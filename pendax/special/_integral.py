@@ -7,7 +7,7 @@ import jax
 import jax.numpy as jnp
 from jax.custom_derivatives import SymbolicZero
 
-from ._cpu import in_blocks
+from ._cpu import DOZENS, in_blocks
 from ._duplication import finite
 
 
@@ -24,7 +24,7 @@ def integral(
     none: NaN.  To derivatives m1 is 1 − m: the
     tangent of m counts, that of m1 does not.
     """
-    fast = jax.jit(in_blocks(lambda *arguments: (value(*arguments),)))
+    fast = jax.jit(in_blocks(lambda *arguments: (value(*arguments),), DOZENS))
 
     @jax.custom_jvp
     def call(*arguments):

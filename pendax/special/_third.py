@@ -9,7 +9,7 @@ from jaxtyping import Array, ArrayLike, Float
 
 from .._arrays import common, widened
 from ._carlson import rc
-from ._cpu import in_blocks, where_needed
+from ._cpu import DOZENS, in_blocks, where_needed
 from ._domain import fenced
 from ._duplication import ordered, rf, rj
 from ._either import with_parameter
@@ -174,7 +174,7 @@ def _rj_jvp(primals, tangents):
 _rj = jax.jit(_rj_everywhere)
 
 
-@in_blocks
+@partial(in_blocks, most=DOZENS)
 def _rj_value(x, y, z, p):
     def inside(x, y, z, p):
         usual = (p > 0) & (p <= 8 * jnp.maximum(x, jnp.maximum(y, z)))
