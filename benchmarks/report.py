@@ -19,8 +19,8 @@ def text() -> str:
         "# Error against run time, stability, and what a scene costs",
         "Written by `python -m benchmarks` out of benchmarks/results; `python -m benchmarks "
         "--verify` measures again and compares. Times are medians of rounds in turn, each method "
-        "warmed up, in each turn where it takes below 50 ms, and blocked. Another run's median is expected in 99 of 100 to be off by no more "
-        "than *spread*, relative (by Student's t of the rounds, and 15 % that two whole runs "
+        "warmed up, in each turn where it takes below 50 ms, and blocked. Another run's median is "
+        "expected in 99 of 100 to be off by no more than *spread*, relative (by Student's t of the rounds, and 15 % that two whole runs "
         "differed by; 0.5 is assumed of what was timed once), and another run's ratio to lie "
         "between *from* and *to*. A "
         "*lane* is one of the pendulums that are followed side by side, a *bar* what was aimed "
