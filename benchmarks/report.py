@@ -18,20 +18,20 @@ def text() -> str:
     parts = [
         "# Error against run time, stability, and what a scene costs",
         "Written by `python -m benchmarks` out of benchmarks/results; `python -m benchmarks "
-        "--verify` measures again and compares. Times are medians of rounds in turn, each method "
-        "warmed up, in each turn where it takes below 50 ms, and blocked. Another run's median is "
-        "expected in 99 of 100 to be off by no more than *spread*, relative (by Student's t of the rounds, and 15 % that two whole runs "
-        "differed by; 0.5 is assumed of what was timed once), and another run's ratio to lie "
-        "between *from* and *to*. A "
+        "--verify` measures again and compares. Times are medians of rounds in turn, each "
+        "method warmed up, in each turn where it takes below 50 ms, and blocked. Another run's "
+        "median is expected in 99 of 100 to be off by no more than *spread*, relative (by "
+        "Student's t of the rounds, and 15 % that two whole runs differed by; 0.5 is assumed "
+        "of what was timed once), and another run's ratio to lie between *from* and *to*. A "
         "*lane* is one of the pendulums that are followed side by side, a *bar* what was aimed "
         "at. heyoka runs a thread on each core, XLA (pendax, diffrax, jaxellip, "
         "elliptic-functions) as many as it likes, SciPy, GSL, Boost, mpmath and pyjjasim one. "
-        "Errors of functions are in eps of the scale, of angles in rad, of gradients over "
-        "1 + |gradient|, of energies relative. On the same machine and versions errors come out "
-        "the same. On another, what roundings decide may not: the mean velocities of fate by parts "
-        "in 1e10, for a reason not yet traced, and what SciPy's and diffrax's solvers give: the "
-        "linear algebra in them (OpenBLAS) rounds as the processor's kernels do, and the "
-        "environment variable OPENBLAS_CORETYPE chooses these.",
+        "Errors of functions are in eps of the scale, of angles in rad, of gradients over 1 + "
+        "|gradient|, of energies relative. On the same machine and versions errors come out "
+        "the same. On another, what roundings decide may not: the mean velocities of fate by "
+        "parts in 1e10, for a reason not yet traced, and what SciPy's and diffrax's solvers "
+        "give: the linear algebra in them (OpenBLAS) rounds as the processor's kernels do, and "
+        "the environment variable OPENBLAS_CORETYPE chooses these.",
     ]
     for name, about in TOPICS.items():
         if not (results.FOLDER / f"{name}.json").exists():
