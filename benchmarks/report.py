@@ -108,7 +108,7 @@ def _loss(row: Row) -> str:
 
 def _wide(row: Row) -> str:
     left = row.get(results.WIDE)
-    return "" if left is None else f" ({left:.2g} with vectors of {results.WIDE})"
+    return "" if left is None else f", {left:.2g} where XLA uses vectors of {results.WIDE},"
 
 
 def _range(row: Row) -> str:

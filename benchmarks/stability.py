@@ -39,7 +39,7 @@ WHY = {
     **dict.fromkeys(("β = 1e2", "β = 1e5", "β = 1e8", "β = 1e8, τ > ε"), FEWER),
     **dict.fromkeys(
         ("v0 = 1e4", "ε = 1e-12"),
-        "both are within twice the tolerance, of which ours use more",
+        "both are far within what solved motions are allowed, of which ours use more",
     ),
 }
 
