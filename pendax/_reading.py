@@ -105,14 +105,18 @@ def _setting(value: Any, function: _Same) -> Any:
 def _bits(value: Any) -> Any:
     if isinstance(value, jax.Array) and jnp.issubdtype(value.dtype, jax.dtypes.prng_key):
         return value.dtype, _bits(jax.random.key_data(value))
-    if isinstance(value, int | float | complex):  # Python's, whole ones of any length
-        return type(value), repr(value)
+    if isinstance(value, int):  # Python's, of any length
+        return type(value), value
     x = np.asarray(value)
-    return x.dtype, x.shape, x.tobytes()  # 0.0 and −0.0 are equal, and not the same
+    return type(value), x.dtype, x.shape, x.tobytes()  # 0.0 and −0.0 are equal, and not the same
+
+
+_PARTS = str, np.ufunc, list, tuple, dict
 
 
 def _held(value: Any, seen: set[int]) -> Iterator[Any]:
-    """Numbers that a function has in closures, defaults, globals of its own and its object."""
+    """The code of a function, and numbers and words that it has in closures, defaults, globals of
+    its own and its object."""
     if isinstance(value, NUMBERS):
         if not isinstance(value, Tracer):
             yield _bits(value)
@@ -121,10 +125,11 @@ def _held(value: Any, seen: set[int]) -> Iterator[Any]:
         return
     seen.add(id(value))
     parts: list[Any] = []
-    if isinstance(value, list | tuple):
-        parts = list(value)
-    elif isinstance(value, dict):
-        parts = list(value.values())
+    if isinstance(value, str | np.ufunc):
+        yield value
+    elif isinstance(value, list | tuple | dict):
+        yield type(value), len(value)
+        parts = [*value.items()] if isinstance(value, dict) else [*value]
     elif isinstance(value, partial):
         parts = [value.func, value.args, value.keywords]
     elif isinstance(value, MethodType):
@@ -132,7 +137,8 @@ def _held(value: Any, seen: set[int]) -> Iterator[Any]:
     elif isinstance(value, FunctionType):
         cells = (cell.cell_contents for cell in value.__closure__ or () if not _is_empty(cell))
         known = (value.__globals__.get(name) for name in value.__code__.co_names)
-        read = [x for x in known if isinstance(x, (*NUMBERS, list, tuple, dict))]
+        read = [x for x in known if isinstance(x, (*NUMBERS, *_PARTS))]
+        yield value.__code__
         parts = [*cells, value.__defaults__, value.__kwdefaults__, *read]
     elif hasattr(value, "call_wrapped"):
         parts = [value.f]

@@ -80,8 +80,9 @@ def simulate(
       can trace, and differentiate by what it closes over.  A function is read at every call: what
       it holds may have changed, and functions that read alike share a compiled program, which a
       Python number is part of: `jnp.asarray` makes one that may change without compiling anew.
-      (A `jax.jit` of your own inside goes on with what it was compiled for.)  By the
-      time of a jump, `a` in `jnp.where(t > a, …)`, JAX's derivative is 0.
+      (JAX itself goes on with what it once read in a `jax.jit` of your own inside, and in a named
+      function given to `lax.cond`, a loop of `lax` or `jax.checkpoint`.)  By the time of a jump,
+      `a` in `jnp.where(t > a, …)`, JAX's derivative is 0.
     - `ts`: times, s; for the closed form in any order and of either sign, else one axis,
       monotone away from `t0`.
     - `v0`, `theta0`: angular velocity, rad/s, and angle, rad, at `t0`, s.

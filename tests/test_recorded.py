@@ -1,5 +1,7 @@
 """Torques that are functions of time: what they hold is seen, at every call, and differentiated."""
 
+import math
+
 import jax
 import jax.numpy as jnp
 import numpy as np
@@ -211,6 +213,48 @@ def test_what_jax_does_not_show():
         assert before == again
         held[0] = 2.0
         assert recorded(tau, jnp.float64).operations != before
+
+
+@pytest.mark.parametrize("held", [
+    [np.sin, np.cos],
+    [lambda t: np.tanh(t), lambda t: np.cos(t)],
+    ["sin", "cos"],
+    [{"amplitude": 0.3, "rate": 2.0}, {"rate": 0.3, "amplitude": 2.0}],
+    [[[0.3], [1.0, 2.0]], [[0.3, 1.0], [2.0]]],
+])  # fmt: skip
+def test_what_else_a_call_of_python_holds(held):
+    """Functions, words, and how its numbers are put together."""
+
+    def by_python(t):
+        one = held[0]
+        shape = jax.ShapeDtypeStruct((), t.dtype)
+        return jax.pure_callback(lambda t: (one, t)[1], shape, t, vmap_method="sequential")
+
+    before, again = (recorded(by_python, jnp.float64).operations for _ in range(2))
+    assert before == again
+    held.reverse()
+    assert recorded(by_python, jnp.float64).operations != before
+
+
+def test_a_torque_that_prints(capfd):
+    def printing(t):
+        jax.debug.print("at {}", t)
+        return 0.3 * jnp.sin(t)
+
+    run = simulate(Pendulum(1.0, 0.2, printing), 0.1, 0.3)
+    silent = simulate(Pendulum(1.0, 0.2, lambda t: 0.3 * jnp.sin(t)), 0.1, 0.3)
+    jax.effects_barrier()
+    assert "at 0.1" in capfd.readouterr().out
+    np.testing.assert_allclose(run.theta, silent.theta, rtol=1e-9)
+
+
+def test_the_sign_of_nan():
+    assert alike(lambda t: jnp.copysign(jnp.nan, t), lambda t: jnp.copysign(jnp.nan, t))
+    held = [math.nan]
+    tau = lambda t: t * held[0]  # noqa: E731
+    before = recorded(tau, jnp.float64).operations
+    held[0] = -math.nan
+    assert recorded(tau, jnp.float64).operations != before
 
 
 def test_what_no_equality_is_made_for():

@@ -118,6 +118,8 @@ def _outputs(equation, inputs: list[_Entire], order: int) -> list[_Entire]:
         # What does not depend on time, whatever it is.
         found = bound(*(x.terms[0] for x in inputs))
         return [_Entire([y]) for y in (found if equation.primitive.multiple_results else [found])]
+    if not equation.outvars:  # what prints
+        raise _Unknown(name)
     kept = _dtype(equation.outvars[0]) == _dtype(equation.invars[0])
     if name in _LINEAR and kept:
         (x,) = inputs
