@@ -56,8 +56,8 @@ def where_needed(needed: Any, function: Callable, *arguments: Any) -> Any:
 
 
 def in_blocks(function: Callable, most: int = _FEW) -> Callable:
-    """`function`, elementwise from arrays of one rank to a tuple of arrays, in blocks of at
-    `most` so many elements where there are two of them or more.
+    """`function`, elementwise from arrays of one rank to a tuple of arrays; from twice `most`
+    elements on in blocks of so many.
 
     Whole arrays would pass through main memory some thirty times.
     Not to be differentiated; a mapped axis becomes one more axis of the arrays.
